@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "gravure/core/error.hpp"
+
+namespace gravure {
+
+/// A file that appears whole or not at all: write to temporary_path(), then commit() syncs and renames it.
+/// Destroyed before commit(), it removes the temporary file.
+class FileOutput {
+ public:
+  /// Reserves a temporary name in the folder of `path`. Fails with io when the folder is missing or not writable.
+  static Result<FileOutput> create(const std::string& path);
+  FileOutput(FileOutput&& other) noexcept;
+  FileOutput& operator=(FileOutput&& other) noexcept;
+  FileOutput(const FileOutput&) = delete;
+  FileOutput& operator=(const FileOutput&) = delete;
+  ~FileOutput();
+
+  const std::string& temporary_path() const noexcept { return temporary_; }
+  const std::string& path() const noexcept { return path_; }
+  Result<void> commit();
+
+ private:
+  FileOutput(std::string path, std::string temporary);
+  void discard() noexcept;
+  std::string path_;
+  std::string temporary_;
+};
+
+/// Writes `content` to `path`, whole or not at all.
+Result<void> write_file(const std::string& path, std::string_view content);
+/// Reads a file of at most `max_bytes`; bad_file beyond, io where it cannot be read.
+Result<std::string> read_file(const std::string& path, std::size_t max_bytes);
+
+}  // namespace gravure

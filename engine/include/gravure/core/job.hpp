@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gravure/core/exact.hpp"
+
+namespace gravure {
+
+/// What the user wants, as the job file says it: values checked one by one, not yet against each other (make_plan
+/// does). docs/formats/job.md explains every field; names and units are those of the file.
+
+enum class Mode : std::uint8_t { rotary };
+
+struct LaserSettings {
+  std::int64_t seed_hz = 0;
+  std::int64_t pulse_divider = 1;           ///< k: every k-th seed pulse is amplified
+  std::int64_t max_pulse_on_demand_hz = 0;  ///< fastest rate at which the gate can switch single pulses
+};
+
+struct FpgaSettings {
+  std::int64_t clock_multiplier = 1;  ///< j: FPGA clock = j * seed
+  int counter_bits = 32;              ///< n, 8..64
+  bool fractional = false;            ///< the counter has the second accumulator
+  std::uint64_t max_prescaler = 4'294'967'295U;
+};
+
+struct ScannerSettings {
+  Rational pixel_pitch_um = 0;
+  std::int64_t slots_per_microvector = 1;
+  std::int64_t turn_slots = 0;       ///< least run-out + run-in between two lines
+  std::int64_t max_extra_slots = 0;  ///< slots the planner may add to a line to improve the seam
+  bool bidirectional = true;
+  std::int64_t bidirectional_offset_ticks = 0;  ///< delay of right-to-left lines in FPGA ticks
+};
+
+struct RotarySettings {
+  std::optional<Rational> diameter_mm;  ///< exactly one of diameter and circumference
+  std::optional<Rational> circumference_mm;
+  std::optional<Rational> line_pitch_um;  ///< exactly one of pitch and lines per revolution
+  std::optional<std::int64_t> lines_per_revolution;
+  std::int64_t encoder_lines = 0;
+  int interpolation_bits = 0;           ///< q
+  std::int64_t gear_encoder_turns = 1;  ///< encoder turns : workpiece turns
+  std::int64_t gear_workpiece_turns = 1;
+  std::int64_t max_ab_hz = 0;
+};
+
+enum class Fires : std::uint8_t { white, black };
+enum class LinesAlong : std::uint8_t { rows, columns };
+enum class LayerOrder : std::uint8_t { sequence, cycle, hold };
+
+struct ImageSettings {
+  std::vector<std::string> files;        ///< patterns, relative to the job file
+  std::optional<std::string> depth_map;  ///< instead of files: one grey image, sliced into `levels` layers
+  std::optional<std::int64_t> levels;
+  std::optional<Rational> depth_min;      ///< sample value that gets no pulse (float maps; default 0)
+  std::optional<Rational> depth_max;      ///< sample value that gets every pulse (default 1, or the integer maximum)
+  std::optional<std::int64_t> threshold;  ///< grey layers: a sample >= threshold is white
+  Fires fires = Fires::white;
+  LinesAlong lines_along = LinesAlong::rows;
+  std::optional<std::int64_t> revolutions;  ///< default: one per layer
+  LayerOrder order = LayerOrder::sequence;
+  std::optional<std::int64_t> pixels_per_line;  ///< lets a job be planned without its images
+};
+
+struct Limits {
+  Rational seam_um = 0;
+};
+
+struct Job {
+  std::string title;
+  Mode mode = Mode::rotary;
+  LaserSettings laser;
+  FpgaSettings fpga;
+  ScannerSettings scanner;
+  RotarySettings rotary;
+  ImageSettings image;
+  Limits limits;
+
+  std::string path;  ///< the job file; image patterns are relative to its folder
+  std::string text;  ///< its bytes, stored in the program
+};
+
+}  // namespace gravure

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gravure/core/exact.hpp"
+#include "gravure/core/job.hpp"
+
+namespace gravure {
+
+/// The exact integers of a job, and every figure that follows from them. Made only by make_plan() (sync), which
+/// states what it guarantees; stored in the program as JSON by formats/plan. Ticks are FPGA ticks (j per seed pulse).
+
+struct ClockPlan {
+  std::int64_t seed_hz = 0;
+  std::int64_t fpga_hz = 0;         ///< j * seed
+  std::int64_t pulse_divider = 1;   ///< k
+  Rational pulse_hz = 0;            ///< seed / k
+  std::int64_t ticks_per_slot = 0;  ///< j * k
+};
+
+struct LinePlan {
+  std::int64_t pixels = 0;
+  std::int64_t slots = 0;  ///< np: run-in + pixels + run-out, whole microvectors
+  std::int64_t slots_per_microvector = 1;
+  std::int64_t ticks = 0;  ///< np * ticks_per_slot
+  bool bidirectional = true;
+  /// First slot of the marking window of a line. The reverse line is the forward line run backwards in time, later by
+  /// the whole slots of the bidirectional offset.
+  std::int64_t forward_first_slot = 0;
+  std::int64_t reverse_first_slot = 0;
+  std::int64_t offset_slots = 0;            ///< bidirectional offset, whole slots, towards zero
+  std::int64_t offset_remainder_ticks = 0;  ///< what is left of it, same sign; |remainder| < ticks_per_slot
+  Rational rate_hz = 0;                     ///< lines per second
+  Rational pixel_pitch_um = 0;
+  Rational scan_speed_m_s = 0;  ///< pixel pitch * pulse rate
+};
+
+struct RotaryPlan {
+  std::int64_t lines_per_revolution = 0;  ///< nL
+  Rational circumference_um = 0;          ///< as given, or pi (100 decimals) * diameter
+  Rational line_pitch_um = 0;             ///< circumference / nL
+  std::int64_t ticks_per_revolution = 0;
+  Rational rpm = 0;
+  Rational surface_speed_mm_s = 0;
+  std::int64_t encoder_lines = 0;
+  int interpolation_bits = 0;
+  std::int64_t gear_encoder_turns = 1;
+  std::int64_t gear_workpiece_turns = 1;
+  Rational edges_per_revolution = 0;  ///< A-B edges per workpiece revolution: 4 * 2^q * nenc * gear
+};
+
+/// [B] eqs 1 to 11 and equations 2.1 to 2.6. All drifts are against the wanted frequency; positive: the axis leads.
+struct AbPlan {
+  int counter_bits = 32;           ///< n
+  std::uint64_t prescaler = 1;     ///< m >= 1
+  std::uint64_t increment = 0;     ///< 1 <= increment + carry <= 2^(n-2)
+  std::uint64_t fraction_num = 0;  ///< the second accumulator: num < den; 0/1 without it
+  std::uint64_t fraction_den = 1;
+  Rational wanted_increment = 0;  ///< X: counts per FPGA clock, [B] eq. 6
+  Rational wanted_hz = 0;         ///< A-B periods per second at the interpolated encoder input, [B] eq. 5
+  Rational output_hz = 0;         ///< emitted, [B] eq. 1
+  std::int64_t max_output_hz = 0;
+  bool exact = false;  ///< output == wanted: zero drift for ever
+  Rational drift_lines_per_revolution = 0;
+  Rational drift_um_per_revolution = 0;
+  Rational seam_limit_um = 0;
+  std::optional<Integer> lines_until_limit;  ///< first line at which |drift| reaches the limit; none: never
+  std::optional<Integer> revolutions_until_limit;
+  Integer bound_lines_until_limit = 0;  ///< the published worst case 1/(2 increment), [B] eq. 10
+};
+
+struct JobPlan {
+  std::int64_t revolutions = 0;
+  std::int64_t ticks = 0;
+  Rational duration_s = 0;
+};
+
+struct Plan {
+  std::string title;
+  Mode mode = Mode::rotary;
+  ClockPlan clock;
+  LinePlan line;
+  RotaryPlan rotary;
+  AbPlan ab;
+  JobPlan job;
+  std::vector<std::string> warnings;
+};
+
+/// A line runs right to left? The scanner alternates without a break from the first line of the job to the last, so
+/// with an odd number of lines per revolution the same line of the next revolution runs the other way.
+inline bool line_is_reverse(const Plan& plan, std::int64_t revolution, std::int64_t line) {
+  return plan.line.bidirectional && (((revolution & plan.rotary.lines_per_revolution) ^ line) & 1) != 0;
+}
+
+}  // namespace gravure

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gravure/core/error.hpp"
+#include "gravure/core/job.hpp"
+#include "gravure/core/plan.hpp"
+
+namespace gravure {
+
+/// One input image as it was compiled.
+struct SourceImage {
+  std::string path;  ///< relative to the job file where it can be
+  std::int64_t page = 0;
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+  std::string sha256;  ///< of the file, lower-case hex
+};
+
+/// A stored layer: the pulse decisions of one revolution, once, however often it is exposed.
+struct StoredLayer {
+  /// Its lines stand in time order for a revolution whose line 0 runs right to left. On a revolution that starts the
+  /// other way every line is to be mirrored when read.
+  bool starts_reverse = false;
+  std::int64_t fired_pixels = 0;
+  std::int64_t source = 0;  ///< index into ProgramHeader::sources
+  std::int64_t level = 0;   ///< depth maps: which slice of the source; else 0
+};
+
+/// Everything in a program but the bits of its lines.
+struct ProgramHeader {
+  static constexpr std::uint32_t kFormatVersion = 1;
+  std::uint32_t format_version = kFormatVersion;
+  Plan plan;
+  std::string job_text;  ///< the job file, byte for byte
+  std::string job_path;
+  Fires fires = Fires::white;
+  LinesAlong lines_along = LinesAlong::rows;
+  std::vector<SourceImage> sources;
+  std::vector<StoredLayer> layers;
+  std::vector<std::uint32_t> layer_of_revolution;
+
+  /// Bytes of the marking window of one line: pixels packed MSB first in time order, 1 fires, unused low bits of the
+  /// last byte 0.
+  std::int64_t line_bytes() const { return (plan.line.pixels + 7) / 8; }
+};
+
+/// A run of whole lines of one layer, the unit of storage, compression and checksums.
+struct ChunkAddress {
+  std::int64_t layer = 0;
+  std::int64_t chunk = 0;
+};
+
+/// A chunk as it lies in the file.
+struct StoredChunk {
+  ChunkAddress address;
+  std::vector<std::byte> bytes;  ///< compressed, or raw where that did not pay
+  std::uint32_t filter_mask = 0;
+  std::uint64_t checksum = 0;  ///< XXH3-64 of `bytes`
+  std::int64_t fired_pixels = 0;
+};
+
+/// Takes the lines of a program. encode() may be called from any thread; put() and finish() from one at a time.
+/// Nothing stands at the target path until finish() has succeeded; a sink destroyed before leaves nothing behind.
+class LineSink {
+ public:
+  virtual ~LineSink() = default;
+  virtual std::int64_t lines_per_chunk() const noexcept = 0;
+  /// Packs a chunk: `lines` holds its lines (line_bytes() each), lines_per_chunk() of them or what is left of the
+  /// layer.
+  virtual Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const = 0;
+  virtual Result<void> put(const StoredChunk& chunk) = 0;
+  /// Writes the header (now complete, with fired pixels) and puts the file in its place.
+  virtual Result<void> finish(const ProgramHeader& header) = 0;
+};
+
+/// Gives the lines of a program. fetch() takes one caller at a time by itself; decode() may run on any thread.
+class LineSource {
+ public:
+  virtual ~LineSource() = default;
+  virtual const ProgramHeader& header() const noexcept = 0;
+  virtual std::int64_t lines_per_chunk() const noexcept = 0;
+  virtual Result<StoredChunk> fetch(ChunkAddress address) = 0;
+  /// Verifies the checksum and unpacks; `out` takes the chunk's lines. bad_file names the chunk's address.
+  virtual Result<void> decode(const StoredChunk& chunk, std::span<std::byte> out) const = 0;
+};
+
+}  // namespace gravure

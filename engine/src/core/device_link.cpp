@@ -1,0 +1,1 @@
+#include "gravure/core/device_link.hpp"

@@ -1,0 +1,159 @@
+#include "gravure/core/file_output.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+namespace gravure {
+namespace {
+
+Error system_error(const std::string& what, const std::string& path) {
+  return {ErrorCode::io, path + ": " + what + ": " + std::strerror(errno)};
+}
+
+/// Closes on every way out.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) {
+      ::close(fd_);
+    }
+  }
+  int get() const { return fd_; }
+  bool valid() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+Result<void> sync_path(const std::string& path, int flags) {
+  const Descriptor file(::open(path.c_str(), flags | O_CLOEXEC));
+  if (!file.valid()) {
+    return system_error("cannot open to sync", path);
+  }
+  // Some file systems cannot sync a folder; that is theirs to say, not a failure of ours.
+  if (::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS) {
+    return system_error("cannot sync to disk", path);
+  }
+  return {};
+}
+
+Result<void> write_all(int fd, std::string_view content, const std::string& path) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(fd, content.data(), content.size());
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written <= 0) {
+      return system_error("cannot write", path);
+    }
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return {};
+}
+
+}  // namespace
+
+FileOutput::FileOutput(std::string path, std::string temporary)
+    : path_(std::move(path)), temporary_(std::move(temporary)) {}
+
+FileOutput::FileOutput(FileOutput&& other) noexcept
+    : path_(std::exchange(other.path_, {})), temporary_(std::exchange(other.temporary_, {})) {}
+
+FileOutput& FileOutput::operator=(FileOutput&& other) noexcept {
+  discard();
+  path_ = std::exchange(other.path_, {});
+  temporary_ = std::exchange(other.temporary_, {});
+  return *this;
+}
+
+FileOutput::~FileOutput() {
+  discard();
+}
+
+void FileOutput::discard() noexcept {
+  if (!temporary_.empty()) {
+    ::unlink(temporary_.c_str());
+    temporary_.clear();
+  }
+}
+
+Result<FileOutput> FileOutput::create(const std::string& path) {
+  std::error_code ignored;
+  if (path.empty() || std::filesystem::is_directory(path, ignored)) {
+    return Error{ErrorCode::io, "output \"" + path + "\" is a folder: give a file name"};
+  }
+  std::string temporary = path + ".part-XXXXXX";
+  const Descriptor file(::mkostemp(temporary.data(), O_CLOEXEC));
+  if (!file.valid()) {
+    return system_error("cannot create the output", path);
+  }
+  // mkostemp gives 0600; the result is to have what any new file would have.
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  static_cast<void>(::fchmod(file.get(), 0666 & ~mask));
+  return FileOutput(path, std::move(temporary));
+}
+
+Result<void> FileOutput::commit() {
+  GRAVURE_CHECK(sync_path(temporary_, O_RDONLY));
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    return system_error("cannot put the finished file in its place", path_);
+  }
+  temporary_.clear();
+  const std::string folder = std::filesystem::path(path_).parent_path().string();
+  return sync_path(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+}
+
+Result<void> write_file(const std::string& path, std::string_view content) {
+  GRAVURE_TRY(FileOutput output, FileOutput::create(path));
+  {
+    const Descriptor file(::open(output.temporary_path().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
+    if (!file.valid()) {
+      return system_error("cannot open the output", path);
+    }
+    GRAVURE_CHECK(write_all(file.get(), content, path));
+  }
+  return output.commit();
+}
+
+Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.valid()) {
+    return system_error("cannot open", path);
+  }
+  struct stat status = {};
+  if (::fstat(file.get(), &status) != 0 || S_ISDIR(status.st_mode)) {
+    return Error{ErrorCode::io, path + ": is not a file"};
+  }
+  std::string content;
+  char buffer[65536];
+  while (true) {
+    const ssize_t got = ::read(file.get(), buffer, sizeof buffer);
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
+    if (got < 0) {
+      return system_error("cannot read", path);
+    }
+    if (got == 0) {
+      return content;
+    }
+    content.append(buffer, static_cast<std::size_t>(got));
+    if (content.size() > max_bytes) {
+      return Error{ErrorCode::bad_file,
+                   path + ": larger than the " + std::to_string(max_bytes) + " bytes allowed here"};
+    }
+  }
+}
+
+}  // namespace gravure
