@@ -22,6 +22,7 @@ struct DeviceSetup {
   std::int64_t lines_per_revolution = 1;
   std::int64_t revolutions = 1;
   std::int64_t first_revolution = 0;  ///< start here, with the axis where the program has it at that tick
+  std::int64_t first_line = 0;        ///< of first_revolution
 };
 
 /// One line on the wire: the bits of its marking window.
@@ -65,6 +66,7 @@ std::string to_string(DeviceFault fault);
 struct DeviceStatus {
   std::int64_t lines_executed = 0;
   std::int64_t tick = 0;                  ///< ticks since tick 0 of the job
+  AxisState axis;                         ///< at that tick
   DeviceFault fault = DeviceFault::none;  ///< sticky; the gate is closed while it stands
   std::string detail;                     ///< what was refused and why
 };

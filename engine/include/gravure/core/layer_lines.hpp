@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "gravure/core/error.hpp"
+
+namespace gravure {
+
+/// The lines of image layers as the images have them: left to right along the line, packed MSB first.
+/// Not thread-safe: each worker has its own.
+class LayerLines {
+ public:
+  virtual ~LayerLines() = default;
+  /// Lines [first_line, first_line + count) of a layer into `out`, (pixels + 7) / 8 bytes each; bits beyond the pixels
+  /// are undefined. Returns true where a one means "stays dark": such bits are to be inverted to become pulses.
+  virtual Result<bool> read_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
+                                  std::span<std::byte> out) = 0;
+};
+
+using LayerLinesFactory = std::function<Result<std::unique_ptr<LayerLines>>()>;
+
+}  // namespace gravure

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gravure/core/image_source.hpp"
+#include "gravure/core/job.hpp"
+#include "gravure/core/layer_lines.hpp"
+#include "gravure/raster/slice.hpp"
+
+namespace gravure {
+
+/// Where a layer's pixels come from.
+struct LayerInput {
+  std::string path;
+  std::int64_t page = 0;
+  std::int64_t level = 0;  ///< depth maps: which slice
+};
+
+/// The images of a job in exposure order and what makes a pixel of them fire.
+struct LayerStack {
+  std::vector<LayerInput> layers;
+  std::int64_t lines = 0;   ///< of every layer
+  std::int64_t pixels = 0;  ///< of every line
+  SampleType samples = SampleType::bit;
+  bool random_access = true;  ///< false: one of the files must be read from its first row on
+  LinesAlong lines_along = LinesAlong::rows;
+  Fires fires = Fires::white;
+  std::optional<std::int64_t> threshold;  ///< grey layers: a sample >= threshold is white
+  std::int64_t levels = 0;                ///< depth map: number of slices; 0 for a stack of layers
+  std::optional<Rational> depth_min;      ///< depth map: sample with no pulse; default 0
+  std::optional<Rational> depth_max;      ///< depth map: sample with every pulse; default 1, 255 or 65535
+};
+
+/// Reads the lines of a stack in bounded memory: rows straight from the file, columns by way of panels (as many columns
+/// as the budget holds, transposed in blocks; a picture with more is decoded once a panel).
+class LayerReader final : public LayerLines {
+ public:
+  /// `panel_bytes` bounds what columns keep in memory; at least 8 columns are always held.
+  LayerReader(const LayerStack& stack, const ImageOpener& opener, std::int64_t panel_bytes);
+  Result<bool> read_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
+                          std::span<std::byte> out) override;
+
+  /// Lines that one pass over a file yields; reading such groups in order is cheapest.
+  static std::int64_t lines_per_pass(const LayerStack& stack, std::int64_t panel_bytes);
+
+ private:
+  struct Limit {
+    double value;
+    raster::Where where;
+  };
+  Result<void> select(const LayerInput& input);
+  Result<void> read_rows(std::int64_t first_row, std::int64_t count, std::span<std::byte> out);
+  Result<void> read_bits(std::int64_t first_line, std::int64_t count, std::span<std::byte> out);
+  /// As many of the lines as are held in one piece; at least one.
+  Result<std::span<const std::byte>> read_samples(std::int64_t first_line, std::int64_t count);
+  /// Holds the panel of columns that contains `first_line`.
+  Result<void> load_panel(std::int64_t first_line);
+  /// Where a grey sample becomes a pulse in this layer.
+  Result<Limit> limit_of(const LayerInput& input) const;
+  void cut(std::span<const std::byte> samples, std::int64_t count, const Limit& limit, std::span<std::byte> out) const;
+
+  const LayerStack& stack_;
+  const ImageOpener& opener_;
+  std::int64_t panel_lines_;
+  std::unique_ptr<ImageSource> source_;
+  std::string path_;
+  std::int64_t page_ = -1;
+  // The lines kept: a block of sample rows, or a panel of columns already turned into lines.
+  std::vector<std::byte> held_;
+  std::int64_t held_first_ = 0;
+  std::int64_t held_count_ = 0;
+};
+
+}  // namespace gravure

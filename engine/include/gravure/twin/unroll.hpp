@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "gravure/core/progress.hpp"
+#include "gravure/twin/exposure.hpp"
+
+namespace gravure {
+
+struct UnrollOptions {
+  std::int64_t memory_bytes = std::int64_t{256} << 20;
+  CancelToken* cancel = nullptr;
+};
+
+/// Takes rows of the unrolled picture from top to bottom: packed MSB first, 1 is white, unused low bits 0.
+using RowSink = std::function<Result<void>(std::span<const std::byte> rows, std::int64_t count)>;
+
+/// Size of the picture an unrolled revolution has: that of its source image.
+struct UnrolledSize {
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+};
+UnrolledSize unrolled_size(const ProgramHeader& header);
+
+/// Runs one revolution on the device and gives what was exposed as the source's picture: its size, orientation and
+/// polarity. Pictures whose lines run along columns are turned in bands that fit the budget, one run a band.
+Result<void> unroll(LineSource& program, const DeviceFactory& devices, std::int64_t revolution, const RowSink& rows,
+                    const UnrollOptions& options);
+
+}  // namespace gravure

@@ -1,0 +1,220 @@
+#include "gravure/pipeline/compile.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <numeric>
+#include <string>
+#include <thread>
+
+#include "gravure/raster/place.hpp"
+#include "ordered_writer.hpp"
+
+namespace gravure {
+namespace {
+
+/// What one worker does at a stretch: some chunks, of one layer or of several.
+struct Task {
+  std::int64_t first_layer;
+  std::int64_t layers;
+  std::int64_t first_chunk;
+  std::int64_t chunks;
+};
+
+struct Geometry {
+  std::int64_t layers;
+  std::int64_t lines;
+  std::int64_t line_bytes;
+  std::int64_t lines_per_chunk;
+  std::int64_t chunks_per_layer() const { return (lines + lines_per_chunk - 1) / lines_per_chunk; }
+  std::int64_t lines_of(std::int64_t chunk) const { return std::min(lines_per_chunk, lines - chunk * lines_per_chunk); }
+};
+
+/// A depth map is walked chunk by chunk, all its layers at once, so that it is decoded once; a stack layer by layer.
+/// Files that only read forwards, and panels of columns, keep as many chunks together as one pass over the file yields.
+/// The order in which chunks are written follows from the images alone, never from the budget or the number of workers.
+class TaskList {
+ public:
+  TaskList(const LayerStack& stack, const Geometry& geometry, std::int64_t lines_per_pass)
+      : geometry_(geometry), depth_map_(stack.levels > 0) {
+    const std::int64_t all = geometry.chunks_per_layer();
+    group_ = depth_map_ ? 1 : std::clamp<std::int64_t>(lines_per_pass / geometry.lines_per_chunk, 1, all);
+    groups_ = (all + group_ - 1) / group_;
+  }
+  std::int64_t size() const { return depth_map_ ? groups_ : groups_ * geometry_.layers; }
+  Task at(std::int64_t ticket) const {
+    const std::int64_t group = depth_map_ ? ticket : ticket % groups_;
+    const std::int64_t first = group * group_;
+    const std::int64_t chunks = std::min(group_, geometry_.chunks_per_layer() - first);
+    return depth_map_ ? Task{0, geometry_.layers, first, chunks} : Task{ticket / groups_, 1, first, chunks};
+  }
+
+ private:
+  Geometry geometry_;
+  bool depth_map_;
+  std::int64_t group_;
+  std::int64_t groups_;
+};
+
+/// Everything one worker holds beside what waits in the writer.
+std::int64_t worker_bytes(const LayerStack& stack, std::int64_t lines_per_chunk) {
+  const std::int64_t chunk = lines_per_chunk * row_bytes(SampleType::bit, stack.pixels);
+  const std::int64_t samples =
+      stack.samples == SampleType::bit ? 0 : lines_per_chunk * row_bytes(stack.samples, stack.pixels);
+  constexpr std::int64_t kDecoder = std::int64_t{8} << 20;  // a strip or row block in the reader, and its library
+  return 3 * chunk + samples + kDecoder;                    // as read, as placed, as packed
+}
+
+std::int64_t least_panel_bytes(const LayerStack& stack) {
+  return stack.lines_along == LinesAlong::columns ? 2 * 8 * row_bytes(stack.samples, stack.pixels) : 0;
+}
+
+struct Budget {
+  int threads;
+  std::int64_t panel_bytes;
+  std::int64_t ahead_bytes;
+};
+
+Result<Budget> divide_budget(const LayerStack& stack, const Geometry& geometry, const CompileOptions& options) {
+  const std::int64_t least = least_compile_memory(stack, geometry.lines_per_chunk);
+  if (options.memory_bytes < least) {
+    constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+    return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options.memory_bytes / kMiB) +
+                                              " MiB: these images need at least " +
+                                              std::to_string((least + kMiB - 1) / kMiB) + " MiB"};
+  }
+  const int wanted = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  const std::int64_t fit = std::max<std::int64_t>(1, options.memory_bytes / least);
+  Budget budget{};
+  budget.threads = static_cast<int>(std::clamp<std::int64_t>(wanted, 1, fit));
+  const std::int64_t spare = options.memory_bytes - budget.threads * worker_bytes(stack, geometry.lines_per_chunk);
+  budget.ahead_bytes = spare / 4;
+  budget.panel_bytes = (spare - budget.ahead_bytes) / budget.threads;
+  return budget;
+}
+
+class Compiler {
+ public:
+  Compiler(ProgramHeader& header, const LayerStack& stack, const ImageOpener& opener, LineSink& sink,
+           const CompileOptions& options, const Geometry& geometry, const Budget& budget)
+      : header_(header),
+        stack_(stack),
+        opener_(opener),
+        sink_(sink),
+        options_(options),
+        geometry_(geometry),
+        budget_(budget),
+        tasks_(stack, geometry, LayerReader::lines_per_pass(stack, budget.panel_bytes)),
+        writer_(sink, budget.ahead_bytes) {}
+
+  Result<void> run() {
+    std::vector<std::thread> workers;
+    const auto count = static_cast<int>(std::min<std::int64_t>(budget_.threads, tasks_.size()));
+    for (int i = 1; i < count; ++i) {
+      workers.emplace_back([this] { work(); });
+    }
+    work();
+    for (std::thread& worker : workers) {
+      worker.join();
+    }
+    if (const std::optional<Error> error = writer_.error()) {
+      return *error;
+    }
+    return {};
+  }
+
+ private:
+  void work() {
+    LayerReader reader(stack_, opener_, budget_.panel_bytes);
+    const std::size_t bytes = static_cast<std::size_t>(geometry_.lines_per_chunk * geometry_.line_bytes);
+    std::vector<std::byte> read(bytes);
+    std::vector<std::byte> placed(bytes);
+    while (true) {
+      const std::int64_t ticket = next_.fetch_add(1);
+      if (ticket >= tasks_.size() || !run_task(tasks_.at(ticket), ticket, reader, read, placed)) {
+        return;
+      }
+    }
+  }
+
+  bool run_task(const Task& task, std::int64_t ticket, LayerReader& reader, std::span<std::byte> read,
+                std::span<std::byte> placed) {
+    for (std::int64_t chunk = task.first_chunk; chunk < task.first_chunk + task.chunks; ++chunk) {
+      for (std::int64_t layer = task.first_layer; layer < task.first_layer + task.layers; ++layer) {
+        if (options_.cancel != nullptr && options_.cancel->cancelled()) {
+          writer_.fail({ErrorCode::cancelled, "stopped before the program was complete; nothing was written"});
+          return false;
+        }
+        Result<StoredChunk> stored = make_chunk({layer, chunk}, reader, read, placed);
+        if (!stored) {
+          writer_.fail(stored.error());
+          return false;
+        }
+        count(layer, chunk, stored.value().fired_pixels);
+        if (!writer_.put(ticket, std::move(stored).value())) {
+          return false;
+        }
+      }
+    }
+    return writer_.close(ticket);
+  }
+
+  Result<StoredChunk> make_chunk(ChunkAddress address, LayerReader& reader, std::span<std::byte> read,
+                                 std::span<std::byte> placed) {
+    const std::int64_t first = address.chunk * geometry_.lines_per_chunk;
+    const std::int64_t lines = geometry_.lines_of(address.chunk);
+    const auto bytes = static_cast<std::size_t>(lines * geometry_.line_bytes);
+    GRAVURE_TRY(const bool invert, reader.read_lines(address.layer, first, lines, read.first(bytes)));
+    const bool bidirectional = header_.plan.line.bidirectional;
+    const bool starts_reverse = header_.layers[static_cast<std::size_t>(address.layer)].starts_reverse;
+    raster::place_rows(placed.first(bytes), read.first(bytes), stack_.pixels, lines,
+                       {.invert = invert,
+                        .first_mirrored = bidirectional && (starts_reverse != ((first & 1) != 0)),
+                        .alternate = bidirectional});
+    return sink_.encode(address, placed.first(bytes));
+  }
+
+  void count(std::int64_t layer, std::int64_t chunk, std::int64_t fired) {
+    const std::lock_guard lock(count_mutex_);
+    header_.layers[static_cast<std::size_t>(layer)].fired_pixels += fired;
+    done_ += geometry_.lines_of(chunk);
+    if (options_.progress != nullptr) {
+      options_.progress->update(done_, geometry_.layers * geometry_.lines);
+    }
+  }
+
+  ProgramHeader& header_;
+  const LayerStack& stack_;
+  const ImageOpener& opener_;
+  LineSink& sink_;
+  const CompileOptions& options_;
+  const Geometry geometry_;
+  const Budget budget_;
+  const TaskList tasks_;
+  OrderedWriter writer_;
+  std::atomic<std::int64_t> next_{0};
+  std::mutex count_mutex_;
+  std::int64_t done_ = 0;
+};
+
+}  // namespace
+
+std::int64_t least_compile_memory(const LayerStack& stack, std::int64_t lines_per_chunk) {
+  return worker_bytes(stack, lines_per_chunk) + least_panel_bytes(stack) * 4 / 3;
+}
+
+Result<ProgramHeader> compile(ProgramHeader header, const LayerStack& stack, const ImageOpener& opener, LineSink& sink,
+                              const CompileOptions& options) {
+  const Geometry geometry{static_cast<std::int64_t>(stack.layers.size()), stack.lines, header.line_bytes(),
+                          sink.lines_per_chunk()};
+  GRAVURE_TRY(const Budget budget, divide_budget(stack, geometry, options));
+  for (StoredLayer& layer : header.layers) {
+    layer.fired_pixels = 0;
+  }
+  GRAVURE_CHECK(Compiler(header, stack, opener, sink, options, geometry, budget).run());
+  GRAVURE_CHECK(sink.finish(header));
+  return header;
+}
+
+}  // namespace gravure

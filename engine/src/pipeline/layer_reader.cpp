@@ -1,0 +1,238 @@
+#include "gravure/pipeline/layer_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "gravure/raster/threshold.hpp"
+#include "gravure/raster/transpose.hpp"
+
+namespace gravure {
+namespace {
+
+constexpr std::int64_t kBandBytes = std::int64_t{4} << 20;  // rows decoded at a time while a panel is collected
+
+std::int64_t bytes_per_sample(SampleType samples) {
+  return row_bytes(samples, 1);
+}
+
+/// Bytes a line of the stack takes while it is held.
+std::int64_t held_line_bytes(const LayerStack& stack) {
+  return row_bytes(stack.samples, stack.pixels);
+}
+
+std::uint32_t integer_maximum(SampleType samples) {
+  return samples == SampleType::u8 ? 255U : 65535U;
+}
+
+std::size_t size(std::int64_t bytes) {
+  return static_cast<std::size_t>(bytes);
+}
+
+/// Samples of `size` bytes: rows x cols -> cols x rows, in blocks that fit the first-level cache.
+void transpose_samples(std::byte* dst, std::int64_t dst_stride, const std::byte* src, std::int64_t src_stride,
+                       std::int64_t rows, std::int64_t cols, std::int64_t sample) {
+  constexpr std::int64_t kBlock = 32;
+  for (std::int64_t r0 = 0; r0 < rows; r0 += kBlock) {
+    for (std::int64_t c0 = 0; c0 < cols; c0 += kBlock) {
+      for (std::int64_t c = c0; c < std::min(cols, c0 + kBlock); ++c) {
+        for (std::int64_t r = r0; r < std::min(rows, r0 + kBlock); ++r) {
+          std::memcpy(dst + c * dst_stride + r * sample, src + r * src_stride + c * sample, size(sample));
+        }
+      }
+    }
+  }
+}
+
+template <class T>
+std::span<const T> samples_as(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+}
+
+}  // namespace
+
+std::int64_t LayerReader::lines_per_pass(const LayerStack& stack, std::int64_t panel_bytes) {
+  if (stack.lines_along == LinesAlong::rows) {
+    return stack.random_access ? 1 : stack.lines;
+  }
+  // A bit panel is held twice while it is turned: once as rows, once as lines.
+  const std::int64_t copies = stack.samples == SampleType::bit ? 2 : 1;
+  const std::int64_t lines = panel_bytes / std::max<std::int64_t>(1, copies * held_line_bytes(stack)) / 8 * 8;
+  return std::min(stack.lines, std::max<std::int64_t>(8, lines));
+}
+
+LayerReader::LayerReader(const LayerStack& stack, const ImageOpener& opener, std::int64_t panel_bytes)
+    : stack_(stack), opener_(opener), panel_lines_(lines_per_pass(stack, panel_bytes)) {}
+
+Result<void> LayerReader::select(const LayerInput& input) {
+  if (source_ && input.path == path_ && input.page == page_) {
+    return {};
+  }
+  source_.reset();
+  held_count_ = 0;
+  GRAVURE_TRY(std::unique_ptr<ImageSource> opened, opener_.open(input.path, input.page));
+  const ImageInfo& info = opened->info();
+  const bool rows = stack_.lines_along == LinesAlong::rows;
+  const std::int64_t lines = rows ? info.height : info.width;
+  const std::int64_t pixels = rows ? info.width : info.height;
+  if (lines != stack_.lines || pixels != stack_.pixels || info.samples != stack_.samples) {
+    return Error{ErrorCode::bad_file, input.path + ": page " + std::to_string(input.page) +
+                                          " changed since the job was read: start again with the files at rest"};
+  }
+  source_ = std::move(opened);
+  path_ = input.path;
+  page_ = input.page;
+  return {};
+}
+
+Result<void> LayerReader::read_rows(std::int64_t first_row, std::int64_t count, std::span<std::byte> out) {
+  return source_->read_rows(first_row, count,
+                            out.first(size(count * row_bytes(stack_.samples, source_->info().width))));
+}
+
+Result<void> LayerReader::load_panel(std::int64_t first_line) {
+  const std::int64_t first = first_line / panel_lines_ * panel_lines_;
+  const std::int64_t count = std::min(panel_lines_, stack_.lines - first);
+  const std::int64_t rows = stack_.pixels;
+  const std::int64_t image_row = row_bytes(stack_.samples, stack_.lines);
+  const std::int64_t band_rows = std::clamp<std::int64_t>(kBandBytes / std::max<std::int64_t>(1, image_row), 1, rows);
+  const std::int64_t sample = bytes_per_sample(stack_.samples);
+  const bool bits = stack_.samples == SampleType::bit;
+  const std::int64_t slab = row_bytes(stack_.samples, count);
+  std::vector<std::byte> band(size(band_rows * image_row));
+  std::vector<std::byte> columns(bits ? size(rows * slab) : 0);
+  held_count_ = 0;
+  held_.resize(size(count * held_line_bytes(stack_)));
+  for (std::int64_t row = 0; row < rows; row += band_rows) {
+    const std::int64_t now = std::min(band_rows, rows - row);
+    GRAVURE_CHECK(read_rows(row, now, band));
+    if (bits) {  // panels start at whole bytes
+      for (std::int64_t r = 0; r < now; ++r) {
+        std::memcpy(columns.data() + (row + r) * slab, band.data() + r * image_row + first / 8, size(slab));
+      }
+    } else {
+      transpose_samples(held_.data() + row * sample, held_line_bytes(stack_), band.data() + first * sample, image_row,
+                        now, count, sample);
+    }
+  }
+  if (bits) {
+    raster::transpose(held_, columns, rows, count);
+  }
+  held_first_ = first;
+  held_count_ = count;
+  return {};
+}
+
+Result<void> LayerReader::read_bits(std::int64_t first_line, std::int64_t count, std::span<std::byte> out) {
+  if (stack_.lines_along == LinesAlong::rows) {
+    return read_rows(first_line, count, out);
+  }
+  const std::int64_t bytes = held_line_bytes(stack_);
+  while (count > 0) {
+    if (first_line < held_first_ || first_line >= held_first_ + held_count_) {
+      GRAVURE_CHECK(load_panel(first_line));
+    }
+    const std::int64_t now = std::min(count, held_first_ + held_count_ - first_line);
+    std::memcpy(out.data(), held_.data() + (first_line - held_first_) * bytes, size(now * bytes));
+    out = out.subspan(size(now * bytes));
+    first_line += now;
+    count -= now;
+  }
+  return {};
+}
+
+Result<std::span<const std::byte>> LayerReader::read_samples(std::int64_t first_line, std::int64_t count) {
+  const std::int64_t bytes = held_line_bytes(stack_);
+  if (first_line < held_first_ || first_line >= held_first_ + held_count_) {
+    if (stack_.lines_along == LinesAlong::rows) {
+      held_count_ = 0;
+      held_.resize(size(count * bytes));
+      GRAVURE_CHECK(read_rows(first_line, count, held_));
+      held_first_ = first_line;
+      held_count_ = count;
+    } else {
+      GRAVURE_CHECK(load_panel(first_line));
+    }
+  }
+  const std::int64_t now = std::min(count, held_first_ + held_count_ - first_line);
+  return std::span<const std::byte>(held_).subspan(size((first_line - held_first_) * bytes), size(now * bytes));
+}
+
+Result<LayerReader::Limit> LayerReader::limit_of(const LayerInput& input) const {
+  if (stack_.levels == 0) {
+    const std::int64_t limit = stack_.threshold.value_or(0);
+    const bool integers = stack_.samples != SampleType::f32;
+    if (integers && (limit < 0 || limit > integer_maximum(stack_.samples))) {
+      return Error{ErrorCode::out_of_range, "image.threshold = " + std::to_string(limit) + ": samples go from 0 to " +
+                                                std::to_string(integer_maximum(stack_.samples))};
+    }
+    return Limit{static_cast<double>(limit), raster::Where::at_least};
+  }
+  const bool integers = stack_.samples != SampleType::f32;
+  Rational low = stack_.depth_min.value_or(0);
+  Rational high = stack_.depth_max.value_or(integers ? Rational(integer_maximum(stack_.samples)) : Rational(1));
+  if (stack_.fires == Fires::black) {  // dark is deep
+    std::swap(low, high);
+  }
+  if (low == high) {
+    return Error{ErrorCode::bad_argument, "image.depth_min = image.depth_max = " + to_decimal_string(low) +
+                                              ": a depth map needs two different ends"};
+  }
+  if (!integers) {
+    const Rational at = low + (high - low) * Rational(2 * input.level + 1, 2 * stack_.levels);
+    return Limit{to_double(at), low < high ? raster::Where::at_least : raster::Where::at_most};
+  }
+  for (const Rational& end : {low, high}) {
+    if (denominator_of(end) != 1 || end < 0 || end > integer_maximum(stack_.samples)) {
+      return Error{ErrorCode::out_of_range, "image.depth_min, image.depth_max: " + to_decimal_string(end) +
+                                                " must be an integer from 0 to " +
+                                                std::to_string(integer_maximum(stack_.samples)) + " for this map"};
+    }
+  }
+  const auto vmin = static_cast<std::uint32_t>(numerator_of(low));
+  const auto vmax = static_cast<std::uint32_t>(numerator_of(high));
+  return Limit{static_cast<double>(raster::slice_threshold(input.level, stack_.levels, vmin, vmax)),
+               raster::slice_where(vmin, vmax)};
+}
+
+void LayerReader::cut(std::span<const std::byte> samples, std::int64_t count, const Limit& limit,
+                      std::span<std::byte> out) const {
+  switch (stack_.samples) {
+    case SampleType::u8:
+      raster::threshold_rows(out, samples_as<std::uint8_t>(samples), stack_.pixels, count,
+                             static_cast<std::uint8_t>(limit.value), limit.where);
+      break;
+    case SampleType::u16:
+      raster::threshold_rows(out, samples_as<std::uint16_t>(samples), stack_.pixels, count,
+                             static_cast<std::uint16_t>(limit.value), limit.where);
+      break;
+    case SampleType::f32:
+      raster::threshold_rows(out, samples_as<float>(samples), stack_.pixels, count, static_cast<float>(limit.value),
+                             limit.where);
+      break;
+    case SampleType::bit:
+      break;
+  }
+}
+
+Result<bool> LayerReader::read_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
+                                     std::span<std::byte> out) {
+  const LayerInput& input = stack_.layers.at(size(layer));
+  GRAVURE_CHECK(select(input));
+  const std::span<std::byte> lines = out.first(size(count * row_bytes(SampleType::bit, stack_.pixels)));
+  if (stack_.samples == SampleType::bit) {
+    GRAVURE_CHECK(read_bits(first_line, count, lines));
+    return source_->info().zero_is_white != (stack_.fires == Fires::black);
+  }
+  GRAVURE_TRY(const Limit limit, limit_of(input));
+  for (std::int64_t line = 0; line < count;) {
+    GRAVURE_TRY(const std::span<const std::byte> samples, read_samples(first_line + line, count - line));
+    const std::int64_t now = static_cast<std::int64_t>(samples.size()) / held_line_bytes(stack_);
+    cut(samples, now, limit, lines.subspan(size(line * row_bytes(SampleType::bit, stack_.pixels))));
+    line += now;
+  }
+  // Slices already know which end is deep; a thresholded picture still has its polarity.
+  return stack_.levels == 0 && stack_.fires == Fires::black;
+}
+
+}  // namespace gravure

@@ -1,0 +1,103 @@
+#include "gravure/twin/exposure.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "gravure/raster/place.hpp"
+
+namespace gravure {
+namespace {
+
+std::size_t size(std::int64_t bytes) {
+  return static_cast<std::size_t>(bytes);
+}
+
+}  // namespace
+
+DeviceSetup device_setup(const Plan& plan, std::int64_t first_revolution, std::int64_t first_line) {
+  DeviceSetup setup;
+  setup.counter_bits = plan.ab.counter_bits;
+  setup.prescaler = plan.ab.prescaler;
+  setup.increment = plan.ab.increment;
+  setup.fraction_num = plan.ab.fraction_num;
+  setup.fraction_den = plan.ab.fraction_den;
+  setup.ticks_per_slot = plan.clock.ticks_per_slot;
+  setup.slots_per_line = plan.line.slots;
+  setup.window_slots = plan.line.pixels;
+  setup.lines_per_revolution = plan.rotary.lines_per_revolution;
+  setup.revolutions = plan.job.revolutions;
+  setup.first_revolution = first_revolution;
+  setup.first_line = first_line;
+  return setup;
+}
+
+Result<void> ProgramChunk::load(LineSource& program, ChunkAddress address) {
+  if (address.layer == address_.layer && address.chunk == address_.chunk) {
+    return {};
+  }
+  const ProgramHeader& header = program.header();
+  address_ = {-1, -1};
+  turned_valid_ = false;
+  first_line_ = address.chunk * program.lines_per_chunk();
+  lines_ = std::min(program.lines_per_chunk(), header.plan.rotary.lines_per_revolution - first_line_);
+  stored_.resize(size(lines_ * header.line_bytes()));
+  GRAVURE_TRY(const StoredChunk chunk, program.fetch(address));
+  GRAVURE_CHECK(program.decode(chunk, stored_));
+  address_ = address;
+  return {};
+}
+
+Result<void> ProgramChunk::send(const ProgramHeader& header, std::int64_t revolution, DeviceLink& device) {
+  const Plan& plan = header.plan;
+  const bool starts_reverse = line_is_reverse(plan, revolution, 0);
+  const bool turn = starts_reverse != header.layers[size(address_.layer)].starts_reverse;
+  if (turn && !turned_valid_) {
+    turned_.resize(stored_.size());
+    raster::place_rows(turned_, stored_, plan.line.pixels, lines_, {.first_mirrored = true});
+    turned_valid_ = true;
+  }
+  const std::vector<std::byte>& lines = turn ? turned_ : stored_;
+  const std::int64_t bytes = header.line_bytes();
+  for (std::int64_t i = 0; i < lines_; ++i) {
+    LineFrame frame;
+    frame.revolution = revolution;
+    frame.line = first_line_ + i;
+    frame.first_slot =
+        line_is_reverse(plan, revolution, frame.line) ? plan.line.reverse_first_slot : plan.line.forward_first_slot;
+    frame.bits = std::span<const std::byte>(lines).subspan(size(i * bytes), size(bytes));
+    frame.crc32c = frame_crc32c(frame);
+    GRAVURE_CHECK(device.send(frame));
+  }
+  return {};
+}
+
+void Landing::start(std::int64_t lines) {
+  taken_ = 0;
+  fired_.resize(size(lines * raster::packed_bytes(plan_.line.pixels)));
+}
+
+bool Landing::take(const ExecutedLine& line) {
+  const bool reverse = plan_.line.bidirectional && (line.ordinal & 1) != 0;
+  const std::size_t bytes = size(raster::packed_bytes(plan_.line.pixels));
+  const std::size_t at = size(taken_) * bytes;
+  if (line.fired.size() != bytes || at + bytes > fired_.size() ||
+      line.first_slot != (reverse ? plan_.line.reverse_first_slot : plan_.line.forward_first_slot)) {
+    return false;
+  }
+  std::memcpy(fired_.data() + at, line.fired.data(), bytes);
+  ++taken_;
+  return true;
+}
+
+std::span<const std::byte> Landing::turn_back(std::int64_t first_line, bool starts_reverse, bool invert) {
+  const std::size_t bytes = size(taken_ * raster::packed_bytes(plan_.line.pixels));
+  landed_.resize(std::max(landed_.size(), bytes));
+  const std::span<std::byte> landed = std::span(landed_).first(bytes);
+  raster::place_rows(landed, std::span<const std::byte>(fired_).first(bytes), plan_.line.pixels, taken_,
+                     {.invert = invert,
+                      .first_mirrored = plan_.line.bidirectional && (starts_reverse != ((first_line & 1) != 0)),
+                      .alternate = plan_.line.bidirectional});
+  return landed;
+}
+
+}  // namespace gravure
