@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gravure/core/device_link.hpp"
+#include "gravure/core/error.hpp"
+#include "gravure/fpga/ab_registers.hpp"
+#include "gravure/fpga/pulse_gate.hpp"
+
+namespace gravure::emulator {
+
+/// Limits of the emulated board beyond those of fpga::AbRegisters and fpga::GateRegisters.
+inline constexpr int kMinCounterBits = 8;
+inline constexpr std::int64_t kMaxWindowSlots = fpga::kMaxWindowSlots;
+
+/// A board without the board: the bit-exact FPGA model behind DeviceLink. It refuses what a board would refuse.
+///
+/// The machine never waits: every send() takes exactly one line time, in which either the frame's line runs or, where
+/// the frame is refused or a fault stands, a dark one. So tick and axis go on through a fault as they do on a machine.
+/// A refused frame latches the fault; it stands, and every line stays dark, until acknowledge(). The next good frame is
+/// then the one of the line whose time has come, not the one that was refused.
+///
+/// Not safe for several threads at once. The observer, if any, must outlive the device; on_line() is called inside
+/// send(), for dark lines too, and what `fired` refers to is valid only during the call.
+class EmulatedDevice final : public DeviceLink {
+ public:
+  explicit EmulatedDevice(PinObserver* observer = nullptr) : observer_(observer) {}
+
+  /// Loads the registers and puts the machine at `first_line` of `first_revolution`. device, naming field, value and allowed
+  /// range, where a register would not take its value, where the job would outlast 2^63 - 1 ticks, or while a fault
+  /// stands; the machine then is as before.
+  Result<void> configure(const DeviceSetup& setup) override;
+
+  /// Runs one line time. device where the frame is refused: in this order sequence (exactly the next line), shape (bits
+  /// of the window, unused low bits 0, window inside the line), checksum; or while a fault stands, or before
+  /// configure(), or after the last line (neither of these two takes a line time).
+  Result<void> send(const LineFrame& frame) override;
+
+  /// `lines_executed` counts the lines of good frames, `tick` every line time since tick 0 of the job, dark ones too.
+  DeviceStatus status() const override;
+
+  /// Clears the fault; the next line may fire.
+  void acknowledge();
+  /// Latches a fault from outside the link: interlock, host_silence or underrun (`none` is ignored).
+  void raise_fault(DeviceFault fault, std::string detail);
+
+ private:
+  Error refuse(DeviceFault fault, std::string detail);
+  /// What is wrong with `frame`, or an empty text.
+  std::string sequence_violation(const LineFrame& frame) const;
+  std::string shape_violation(const LineFrame& frame) const;
+  void run_line(const LineFrame& frame, bool dark);
+  std::string place() const;  ///< "revolution 1, line 2"
+
+  PinObserver* observer_;
+  bool configured_ = false;
+  DeviceSetup setup_;
+  fpga::AbRegisters ab_;
+  std::int64_t ticks_per_line_ = 0;
+  std::vector<std::byte> fired_;
+
+  std::int64_t revolution_ = 0;  ///< of the next line
+  std::int64_t line_ = 0;
+  std::int64_t ordinal_ = 0;
+  std::int64_t lines_executed_ = 0;
+  DeviceFault fault_ = DeviceFault::none;
+  std::string detail_;
+};
+
+}  // namespace gravure::emulator

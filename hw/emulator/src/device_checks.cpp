@@ -1,0 +1,118 @@
+#include "device_checks.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "gravure/emulator/emulated_device.hpp"
+#include "gravure/fpga/pulse_gate.hpp"
+
+namespace gravure::emulator {
+namespace {
+
+constexpr std::int64_t kMaxTick = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kMaxWord32 = std::numeric_limits<std::uint32_t>::max();
+
+/// Collects one line for each refused field.
+class Refusals {
+ public:
+  void add(std::string_view field, const std::string& value, std::string_view allowed, std::string_view remedy = {}) {
+    text_ += text_.empty() ? "" : "\n";
+    text_.append("the board refuses ")
+        .append(field)
+        .append(" = ")
+        .append(value)
+        .append(": allowed is ")
+        .append(allowed);
+    if (!remedy.empty()) {
+      text_.append("; ").append(remedy);
+    }
+  }
+  void range(std::string_view field, std::int64_t value, std::int64_t low, std::int64_t high) {
+    if (value < low || value > high) {
+      add(field, std::to_string(value), std::to_string(low) + " to " + std::to_string(high));
+    }
+  }
+  bool empty() const { return text_.empty(); }
+  Result<void> result() const { return text_.empty() ? Result<void>() : Error{ErrorCode::device, text_}; }
+
+ private:
+  std::string text_;
+};
+
+void check_counter(const DeviceSetup& setup, Refusals& refusals) {
+  refusals.range("counter_bits", setup.counter_bits, kMinCounterBits, fpga::kMaxCounterBits);
+  if (setup.prescaler == 0) {
+    refusals.add("prescaler", "0", "1 or more");
+  }
+  if (setup.fraction_den == 0) {
+    refusals.add("fraction_den", "0", "1 or more", "0/1 turns the fraction off");
+  } else if (setup.fraction_num >= setup.fraction_den) {
+    refusals.add("fraction_num", std::to_string(setup.fraction_num), "0 to " + std::to_string(setup.fraction_den - 1),
+                 "put whole counts into the increment");
+  }
+  if (!refusals.empty()) {
+    return;
+  }
+  const fpga::AbRegisters registers = ab_registers_of(setup);
+  if (fpga::check(registers) != fpga::AbRefusal::none) {
+    refusals.add("increment", std::to_string(setup.increment), "0 to " + std::to_string(fpga::max_increment(registers)),
+                 "more would move A and B together: lower the prescaler or the axis speed");
+  }
+}
+
+void check_line(const DeviceSetup& setup, Refusals& refusals) {
+  refusals.range("ticks_per_slot", setup.ticks_per_slot, 1, kMaxWord32);
+  refusals.range("slots_per_line", setup.slots_per_line, 1, kMaxWord32);
+  if (setup.window_slots > setup.slots_per_line && setup.slots_per_line >= 1) {
+    refusals.add("window_slots", std::to_string(setup.window_slots), "0 to " + std::to_string(setup.slots_per_line),
+                 "the window must lie inside the line");
+  } else {
+    refusals.range("window_slots", setup.window_slots, 0, kMaxWindowSlots);
+  }
+}
+
+void check_job(const DeviceSetup& setup, Refusals& refusals) {
+  refusals.range("lines_per_revolution", setup.lines_per_revolution, 1, kMaxTick);
+  if (setup.lines_per_revolution >= 1) {
+    refusals.range("first_line", setup.first_line, 0, setup.lines_per_revolution - 1);
+  }
+  refusals.range("revolutions", setup.revolutions, 1, kMaxTick);
+  if (setup.revolutions >= 1) {
+    refusals.range("first_revolution", setup.first_revolution, 0, setup.revolutions - 1);
+  }
+  if (!refusals.empty()) {
+    return;
+  }
+  std::int64_t ticks = setup.revolutions;
+  for (const std::int64_t factor : {setup.lines_per_revolution, setup.slots_per_line, setup.ticks_per_slot}) {
+    if (__builtin_mul_overflow(ticks, factor, &ticks)) {
+      refusals.add("revolutions", std::to_string(setup.revolutions),
+                   "what keeps revolutions * lines_per_revolution * slots_per_line * ticks_per_slot at most " +
+                       std::to_string(kMaxTick) + " ticks",
+                   "split the job");
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+fpga::AbRegisters ab_registers_of(const DeviceSetup& setup) noexcept {
+  return {.bits = setup.counter_bits,
+          .prescaler = setup.prescaler,
+          .increment = setup.increment,
+          .fraction_num = setup.fraction_num,
+          .fraction_den = setup.fraction_den};
+}
+
+Result<void> check_setup(const DeviceSetup& setup) {
+  Refusals refusals;
+  check_counter(setup, refusals);
+  check_line(setup, refusals);
+  check_job(setup, refusals);
+  return refusals.result();
+}
+
+}  // namespace gravure::emulator

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "gravure/core/device_link.hpp"
+#include "gravure/core/error.hpp"
+#include "gravure/fpga/ab_registers.hpp"
+
+namespace gravure::emulator {
+
+/// The A-B registers of a setup. Its counter_bits must be in range.
+fpga::AbRegisters ab_registers_of(const DeviceSetup& setup) noexcept;
+
+/// device, with one line for each register that the board would not take as it is.
+Result<void> check_setup(const DeviceSetup& setup);
+
+}  // namespace gravure::emulator

@@ -1,0 +1,166 @@
+#include "gravure/emulator/emulated_device.hpp"
+
+#include <utility>
+
+#include "device_checks.hpp"
+#include "gravure/fpga/ab_edges.hpp"
+
+namespace gravure::emulator {
+namespace {
+
+std::string place_of(std::int64_t revolution, std::int64_t line) {
+  return "revolution " + std::to_string(revolution) + ", line " + std::to_string(line);
+}
+
+std::string hex32(std::uint32_t value) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text = "0x";
+  for (int shift = 28; shift >= 0; shift -= 4) {
+    text += kDigits[(value >> static_cast<unsigned>(shift)) & 15U];
+  }
+  return text;
+}
+
+AxisState axis_after(const fpga::AbRegisters& registers, std::int64_t tick) {
+  const fpga::AbPosition position = fpga::position_after(registers, static_cast<std::uint64_t>(tick));
+  return {.edges = position.edges,
+          .counts_high = static_cast<std::uint64_t>(position.counts >> 64U),
+          .counts_low = static_cast<std::uint64_t>(position.counts)};
+}
+
+}  // namespace
+
+std::string EmulatedDevice::place() const {
+  return place_of(revolution_, line_);
+}
+
+Result<void> EmulatedDevice::configure(const DeviceSetup& setup) {
+  if (fault_ != DeviceFault::none) {
+    return Error{ErrorCode::device, "configure: the fault \"" + to_string(fault_) +
+                                        "\" stands and locks the registers; acknowledge it first (" + detail_ + ")"};
+  }
+  GRAVURE_CHECK(check_setup(setup));
+  fired_.assign(fpga::packed_bytes(static_cast<std::uint32_t>(setup.window_slots)), std::byte{0});
+  setup_ = setup;
+  ab_ = ab_registers_of(setup);
+  ticks_per_line_ = setup.slots_per_line * setup.ticks_per_slot;
+  revolution_ = setup.first_revolution;
+  line_ = setup.first_line;
+  ordinal_ = setup.first_revolution * setup.lines_per_revolution + setup.first_line;
+  lines_executed_ = 0;
+  detail_.clear();
+  configured_ = true;
+  return {};
+}
+
+std::string EmulatedDevice::sequence_violation(const LineFrame& frame) const {
+  if (frame.revolution == revolution_ && frame.line == line_) {
+    return {};
+  }
+  return "frame of " + place_of(frame.revolution, frame.line) + ": only " + place() + " may come next";
+}
+
+std::string EmulatedDevice::shape_violation(const LineFrame& frame) const {
+  if (frame.bits.size() != fired_.size()) {
+    return "frame of " + place() + ": " + std::to_string(frame.bits.size()) + " bytes of bits, must be " +
+           std::to_string(fired_.size()) + " for window_slots = " + std::to_string(setup_.window_slots);
+  }
+  const auto unused = static_cast<unsigned>(-setup_.window_slots & 7);
+  if (unused != 0 && (std::to_integer<unsigned>(frame.bits.back()) & ((1U << unused) - 1U)) != 0) {
+    return "frame of " + place() + ": the last byte is " +
+           std::to_string(std::to_integer<unsigned>(frame.bits.back())) + ", its " + std::to_string(unused) +
+           " low bits lie past the window and must be 0";
+  }
+  const std::int64_t last_first = setup_.slots_per_line - setup_.window_slots;
+  if (frame.first_slot < 0 || frame.first_slot > last_first) {
+    return "frame of " + place() + ": first_slot = " + std::to_string(frame.first_slot) + ", must be 0 to " +
+           std::to_string(last_first) + " to keep the window inside the line";
+  }
+  return {};
+}
+
+Error EmulatedDevice::refuse(DeviceFault fault, std::string detail) {
+  raise_fault(fault, std::move(detail));
+  return {ErrorCode::device,
+          "device fault \"" + to_string(fault) + "\": " + detail_ + "; the gate is closed until acknowledged"};
+}
+
+void EmulatedDevice::run_line(const LineFrame& frame, bool dark) {
+  if (dark) {
+    fpga::gate_line({}, static_cast<std::uint32_t>(setup_.window_slots), true, fired_);
+  } else {
+    fpga::gate_line(frame.bits, static_cast<std::uint32_t>(setup_.window_slots), false, fired_);
+    ++lines_executed_;
+  }
+  if (observer_ != nullptr) {
+    const std::int64_t tick = ordinal_ * ticks_per_line_;
+    observer_->on_line({.start_tick = tick,
+                        .ordinal = ordinal_,
+                        .first_slot = dark ? 0 : frame.first_slot,
+                        .fired = fired_,
+                        .axis_at_start = axis_after(ab_, tick)});
+  }
+  ++ordinal_;
+  if (++line_ == setup_.lines_per_revolution) {
+    line_ = 0;
+    ++revolution_;
+  }
+}
+
+Result<void> EmulatedDevice::send(const LineFrame& frame) {
+  if (!configured_) {
+    return Error{ErrorCode::device, "send: the device is not configured; call configure() first"};
+  }
+  if (revolution_ == setup_.revolutions) {
+    return refuse(DeviceFault::sequence, "frame of " + place_of(frame.revolution, frame.line) + ": the job of " +
+                                             std::to_string(setup_.revolutions) + " revolutions is over");
+  }
+  if (fault_ != DeviceFault::none) {
+    const std::string here = place();
+    run_line(frame, true);
+    return Error{ErrorCode::device, "the fault \"" + to_string(fault_) + "\" stands (" + detail_ + "): " + here +
+                                        " passed dark; acknowledge it first"};
+  }
+  DeviceFault fault = DeviceFault::none;
+  std::string detail;
+  if (detail = sequence_violation(frame); !detail.empty()) {
+    fault = DeviceFault::sequence;
+  } else if (detail = shape_violation(frame); !detail.empty()) {
+    fault = DeviceFault::shape;
+  } else if (const std::uint32_t crc = frame_crc32c(frame); crc != frame.crc32c) {
+    fault = DeviceFault::checksum;
+    detail = "frame of " + place() + ": crc32c = " + hex32(frame.crc32c) + ", its content gives " + hex32(crc);
+  }
+  run_line(frame, fault != DeviceFault::none);
+  if (fault != DeviceFault::none) {
+    return refuse(fault, std::move(detail));
+  }
+  return {};
+}
+
+DeviceStatus EmulatedDevice::status() const {
+  DeviceStatus status{.lines_executed = lines_executed_,
+                      .tick = ordinal_ * ticks_per_line_,
+                      .axis = {},
+                      .fault = fault_,
+                      .detail = detail_};
+  if (configured_) {
+    status.axis = axis_after(ab_, status.tick);
+  }
+  return status;
+}
+
+void EmulatedDevice::acknowledge() {
+  fault_ = DeviceFault::none;
+  detail_.clear();
+}
+
+void EmulatedDevice::raise_fault(DeviceFault fault, std::string detail) {
+  if (fault == DeviceFault::none || fault_ != DeviceFault::none) {
+    return;  // the first fault is the one that is kept
+  }
+  fault_ = fault;
+  detail_ = std::move(detail);
+}
+
+}  // namespace gravure::emulator

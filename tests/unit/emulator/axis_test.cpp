@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <random>
+
+#include "gravure/fpga/ab_counter.hpp"
+#include "recorder.hpp"
+
+namespace gravure::emulator {
+namespace {
+
+using test::Frame;
+using test::Recorder;
+using test::send;
+using test::small_setup;
+
+DeviceSetup random_setup(std::mt19937_64& rng) {
+  DeviceSetup setup = small_setup();
+  setup.counter_bits = static_cast<int>(8 + rng() % 57);
+  setup.prescaler = 1 + rng() % 5;
+  setup.fraction_den = (rng() >> (rng() % 64)) | 1U;
+  setup.fraction_num = rng() % setup.fraction_den;
+  setup.increment = rng() % (std::uint64_t{1} << static_cast<unsigned>(setup.counter_bits - 2));
+  setup.ticks_per_slot = static_cast<std::int64_t>(1 + rng() % 7);
+  return setup;
+}
+
+/// Runs the counter clock by clock to each line's start and compares what can be seen: pins, edges, counts mod 2^64.
+TEST(EmulatedDeviceAxis, EqualsTheCounterClockByClock) {
+  std::mt19937_64 rng(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const DeviceSetup setup = random_setup(rng);
+    Recorder recorder;
+    EmulatedDevice device(&recorder);
+    ASSERT_TRUE(device.configure(setup));
+    auto counter = fpga::AbCounter::make({.bits = setup.counter_bits,
+                                          .prescaler = setup.prescaler,
+                                          .increment = setup.increment,
+                                          .fraction_num = setup.fraction_num,
+                                          .fraction_den = setup.fraction_den});
+    ASSERT_TRUE(counter);
+    const std::uint64_t mask = ~std::uint64_t{0} >> static_cast<unsigned>(64 - setup.counter_bits);
+    std::uint64_t edges = 0;
+    fpga::AbPins before;
+    for (std::int64_t ordinal = 0; ordinal < 12; ++ordinal) {
+      ASSERT_TRUE(send(device, ordinal / 4, ordinal % 4));
+      const Recorder::Line& line = recorder.lines.back();
+      while (counter->clock() < static_cast<std::uint64_t>(line.start_tick)) {
+        const fpga::AbPins now = counter->step();
+        edges += now == before ? 0 : 1;
+        before = now;
+      }
+      ASSERT_EQ(line.axis.edges, edges);
+      ASSERT_EQ(line.axis.counts_low & mask, counter->counter());
+    }
+  }
+}
+
+void expect_same(const AxisState& a, const AxisState& b) {
+  EXPECT_EQ(a.edges, b.edges);
+  EXPECT_EQ(a.counts_high, b.counts_high);
+  EXPECT_EQ(a.counts_low, b.counts_low);
+}
+
+TEST(EmulatedDeviceAxis, StandsAtAnyFirstLineWhereARunFromTheStartGetsTo) {
+  for (std::int64_t first = 0; first < 12; ++first) {
+    SCOPED_TRACE(first);
+    Recorder whole;
+    Recorder late;
+    EmulatedDevice from_start(&whole);
+    EmulatedDevice resumed(&late);
+    DeviceSetup setup = small_setup();
+    ASSERT_TRUE(from_start.configure(setup));
+    setup.first_revolution = first / 4;
+    setup.first_line = first % 4;
+    ASSERT_TRUE(resumed.configure(setup));
+    for (std::int64_t ordinal = 0; ordinal < 12; ++ordinal) {
+      if (ordinal >= first) {
+        EXPECT_EQ(from_start.status().tick, resumed.status().tick);
+        expect_same(from_start.status().axis, resumed.status().axis);
+        ASSERT_TRUE(send(resumed, ordinal / 4, ordinal % 4));
+      }
+      ASSERT_TRUE(send(from_start, ordinal / 4, ordinal % 4));
+      if (ordinal >= first) {
+        EXPECT_EQ(whole.lines.back().start_tick, late.lines.back().start_tick);
+        EXPECT_EQ(whole.lines.back().ordinal, late.lines.back().ordinal);
+        EXPECT_EQ(whole.lines.back().fired, late.lines.back().fired);
+        expect_same(whole.lines.back().axis, late.lines.back().axis);
+      }
+    }
+    EXPECT_EQ(from_start.status().lines_executed, 12);
+    EXPECT_EQ(resumed.status().lines_executed, 12 - first);
+  }
+}
+
+TEST(EmulatedDeviceAxis, StatusTellsTheAxisAtItsTick) {
+  Recorder recorder;
+  EmulatedDevice device(&recorder);
+  expect_same(device.status().axis, AxisState{});
+  ASSERT_TRUE(device.configure(small_setup()));
+  ASSERT_TRUE(send(device, 0, 0));
+  const AxisState before = device.status().axis;
+  ASSERT_TRUE(send(device, 0, 1));
+  expect_same(before, recorder.lines.back().axis);
+}
+
+TEST(EmulatedDeviceAxis, CountsBeyondSixtyFourBits) {
+  DeviceSetup setup = small_setup();
+  setup.counter_bits = 64;
+  setup.prescaler = 1;
+  setup.increment = (std::uint64_t{1} << 62U) - 1;
+  Recorder recorder;
+  EmulatedDevice device(&recorder);
+  ASSERT_TRUE(device.configure(setup));
+  ASSERT_TRUE(send(device, 0, 0));
+  ASSERT_TRUE(send(device, 0, 1));
+  // 60 * (2^62 - 1) + floor(60 * 5 / 7) = 15 * 2^64 - 60 + 42
+  EXPECT_EQ(recorder.lines.back().axis.counts_high, 14U);
+  EXPECT_EQ(recorder.lines.back().axis.counts_low, ~std::uint64_t{0} - 17);
+  EXPECT_EQ(recorder.lines.back().axis.edges, 59U);
+}
+
+}  // namespace
+}  // namespace gravure::emulator
