@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+#include "gravure/core/job.hpp"
+#include "src/toml_document.hpp"
+#include "src/violations.hpp"
+
+namespace gravure::job_file {
+
+/// What one key says about another: which exclude or need each other, whose values contradict. Keys count as given
+/// where they stand in the file, even with a wrong value; values are compared where both passed their own checks and
+/// so are in `job`.
+void check_rules(const Document& document, const Job& job, Violations& violations);
+
+/// Keys that a section needs beyond its required ones, for the message when the whole section is missing.
+std::string_view choices_of(std::string_view section);
+
+}  // namespace gravure::job_file

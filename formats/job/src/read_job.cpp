@@ -1,0 +1,53 @@
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+#include "gravure/formats/job_file.hpp"
+
+namespace gravure {
+namespace {
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
+};
+
+std::string reason() {
+  return std::generic_category().message(errno);
+}
+
+Error too_large(const std::string& path, std::size_t size) {
+  return {ErrorCode::bad_file,
+          path + ": " + std::to_string(size) + " bytes: a job file has at most " + std::to_string(kMaxJobBytes)};
+}
+
+}  // namespace
+
+Result<Job> read_job(const std::string& path) {
+  struct stat status = {};
+  if (stat(path.c_str(), &status) != 0) {
+    return Error{ErrorCode::bad_file, path + ": cannot be opened: " + reason() + "; give the path of a job file"};
+  }
+  if (!S_ISREG(status.st_mode)) {
+    return Error{ErrorCode::bad_file, path + ": is not a regular file; give the path of a job file"};
+  }
+  if (static_cast<std::uint64_t>(status.st_size) > kMaxJobBytes) {
+    return too_large(path, static_cast<std::size_t>(status.st_size));
+  }
+  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rbe"));
+  if (!file) {
+    return Error{ErrorCode::bad_file, path + ": cannot be opened: " + reason() + "; give the path of a job file"};
+  }
+  // One byte beyond what was promised tells a file that grew meanwhile.
+  std::string text(kMaxJobBytes + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  if (std::ferror(file.get()) != 0) {
+    return Error{ErrorCode::io, path + ": reading broke off: " + reason()};
+  }
+  return parse_job(text, path);
+}
+
+}  // namespace gravure
