@@ -1,0 +1,137 @@
+#include "gravure/formats/image_stack.hpp"
+
+#include <filesystem>
+
+#include "gravure/formats/image_files.hpp"
+
+namespace gravure {
+namespace {
+
+std::string place(const StackImage& image) {
+  return image.path + ": page " + std::to_string(image.page) + ": ";
+}
+
+const char* samples_name(SampleType samples) {
+  switch (samples) {
+    case SampleType::bit:
+      return "1-bit";
+    case SampleType::u8:
+      return "8-bit grey";
+    case SampleType::u16:
+      return "16-bit grey";
+    case SampleType::f32:
+      return "floating-point";
+  }
+  return "unknown";
+}
+
+Result<void> add_pages(const std::string& path, const ImageOpener& opener, std::vector<StackImage>& images) {
+  GRAVURE_TRY(const std::int64_t pages, opener.count_pages(path));
+  if (pages < 1) {
+    return Error{ErrorCode::bad_file, path + ": holds no image"};
+  }
+  for (std::int64_t page = 0; page < pages; ++page) {
+    GRAVURE_TRY(const auto source, opener.open(path, page));
+    images.push_back({path, page, source->info()});
+  }
+  return {};
+}
+
+Result<void> check_alike(const std::vector<StackImage>& images) {
+  const StackImage& first = images.front();
+  for (const StackImage& image : images) {
+    if (image.info.width != first.info.width || image.info.height != first.info.height) {
+      return Error{ErrorCode::bad_file, place(image) + "is " + std::to_string(image.info.width) + " x " +
+                                            std::to_string(image.info.height) + " pixels, the first layer (" +
+                                            first.path + ") " + std::to_string(first.info.width) + " x " +
+                                            std::to_string(first.info.height) + ": all layers must be of one size"};
+    }
+    if (image.info.samples != first.info.samples) {
+      return Error{ErrorCode::bad_file, place(image) + "has " + samples_name(image.info.samples) +
+                                            " samples, the first layer (" + first.path + ") " +
+                                            samples_name(first.info.samples) + ": all layers must be of one kind"};
+    }
+  }
+  return {};
+}
+
+/// Grey layers become bilevel by the threshold; without one nobody said what is white.
+Result<void> check_threshold(const ImageSettings& settings, ImageStack& stack) {
+  const StackImage& first = stack.images.front();
+  const SampleType samples = first.info.samples;
+  if (samples == SampleType::bit) {
+    if (settings.threshold) {
+      stack.warnings.push_back("[image] threshold = " + std::to_string(*settings.threshold) +
+                               ": the layers are bilevel already, so it does nothing; leave it out");
+    }
+    return {};
+  }
+  if (samples == SampleType::f32) {
+    return Error{ErrorCode::bad_argument, place(first) +
+                                              "floating-point samples cannot be layers: save them as 1, 8 or "
+                                              "16 bits, or give the image as [image] depth_map"};
+  }
+  const std::int64_t largest = samples == SampleType::u8 ? 255 : 65535;
+  const std::string range = " (1 to " + std::to_string(largest) + "; a sample >= threshold is white; the middle is " +
+                            std::to_string((largest + 1) / 2) + ")";
+  if (!settings.threshold) {
+    return Error{ErrorCode::bad_argument,
+                 place(first) + samples_name(samples) + " layers need [image] threshold" + range};
+  }
+  if (*settings.threshold < 1 || *settings.threshold > largest) {
+    return Error{ErrorCode::out_of_range, "[image] threshold = " + std::to_string(*settings.threshold) +
+                                              ": out of range for " + samples_name(samples) + " layers" + range};
+  }
+  return {};
+}
+
+Result<void> check_depth_map(const ImageSettings& settings, ImageStack& stack) {
+  const StackImage& map = stack.images.front();
+  if (stack.images.size() != 1) {
+    return Error{ErrorCode::bad_argument, map.path + ": [image] depth_map has " + std::to_string(stack.images.size()) +
+                                              " pages: a depth map is one page; split the file"};
+  }
+  if (map.info.samples == SampleType::bit) {
+    return Error{ErrorCode::bad_argument,
+                 place(map) +
+                     "[image] depth_map is bilevel: a depth map has 8, 16 or floating-point bits a sample; give "
+                     "a bilevel image as [image] files"};
+  }
+  if (!settings.levels || *settings.levels < 1) {
+    return Error{ErrorCode::bad_argument,
+                 "[image] levels: missing or below 1: a depth map needs the number of layers it is sliced into"};
+  }
+  stack.layers = *settings.levels;
+  return {};
+}
+
+}  // namespace
+
+ScanSize scan_size(const ImageSettings& settings, std::int64_t width, std::int64_t height) {
+  return settings.lines_along == LinesAlong::rows ? ScanSize{width, height} : ScanSize{height, width};
+}
+
+Result<ImageStack> scan_stack(const Job& job, const ImageOpener& opener) {
+  ImageStack stack;
+  stack.depth_map = job.image.depth_map.has_value();
+  const std::vector<std::string> patterns =
+      stack.depth_map ? std::vector<std::string>{*job.image.depth_map} : job.image.files;
+  if (patterns.empty()) {
+    return Error{ErrorCode::bad_argument, "[image] files: no image given; name files or a depth_map"};
+  }
+  const std::string folder = std::filesystem::path(job.path).parent_path().string();
+  GRAVURE_TRY(const std::vector<std::string> files, expand_patterns(folder, patterns));
+  for (const std::string& path : files) {
+    GRAVURE_CHECK(add_pages(path, opener, stack.images));
+  }
+  stack.layers = static_cast<std::int64_t>(stack.images.size());
+  if (stack.depth_map) {
+    GRAVURE_CHECK(check_depth_map(job.image, stack));
+    return stack;
+  }
+  GRAVURE_CHECK(check_alike(stack.images));
+  GRAVURE_CHECK(check_threshold(job.image, stack));
+  return stack;
+}
+
+}  // namespace gravure
