@@ -110,6 +110,36 @@ TEST(AbEdges, RunToStopsAtTheClockAndContinues) {
   EXPECT_TRUE(of_whole == of_parts);
 }
 
+TEST(AbEdges, RunToGivesTheEdgesOfNextEdgeAnywhere) {
+  const std::uint64_t seed = random_seed();
+  SCOPED_TRACE(testing::Message() << "rerun with GRAVURE_TEST_SEED=" << seed);
+  Words words(seed);
+  for (int trial = 0; trial < 3000; ++trial) {
+    const AbRegisters registers = random_registers(words);
+    SCOPED_TRACE(describe(registers));
+    auto running = AbEdges::make(registers);
+    const std::uint64_t start = trial % 3 == 0 ? kLastClock - words.of_any_length() % 1000 : words.of_any_length();
+    running->seek(start);
+    auto stepping = *running;
+    std::uint64_t last = start;
+    EdgeHash by_step;
+    for (int count = 0; count < 50; ++count) {
+      if (const auto edge = stepping.next_edge(); edge) {
+        by_step.add(edge->clock, edge->pins);
+        last = edge->clock;
+      }
+    }
+    EdgeHash by_run;
+    running->run_to(last, [&](const AbEdge& edge) { by_run.add(edge.clock, edge.pins); });
+    ASSERT_EQ(by_step.edges(), by_run.edges());
+    ASSERT_TRUE(by_step == by_run);
+    ASSERT_EQ(stepping.edges(), running->edges());
+    const auto a = stepping.next_edge();
+    const auto b = running->next_edge();
+    ASSERT_EQ(a ? a->clock : 0, b ? b->clock : 0);
+  }
+}
+
 TEST(AbEdges, RefusesWhatTheBoardWouldRefuse) {
   EXPECT_FALSE(AbEdges::make({.bits = 32, .increment = (1U << 30U) + 1}));
   EXPECT_FALSE(AbEdges::make({.bits = 32, .prescaler = 0, .increment = 1}));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -91,13 +90,48 @@ class AbEdges {
   void run(Walk<Word>& walk, std::uint64_t last, Sink& sink) {
     AbEdges local = *this;  // lets the compiler keep the state in registers across calls of the sink
     Walk<Word> local_walk = walk;
-    while (!local.exhausted_ && local.next_clock_ <= last) {
+    const auto one_edge = [&] {
       const AbEdge edge{local.next_clock_, pins_of_quarter(++local.edges_)};
       local.advance(local_walk);
       sink(edge);
+    };
+    while (!local.exhausted_ && local.next_clock_ <= last) {
+      if (local.edges_ % 4 == 0 && last >= local.next_clock_ && (last - local.next_clock_) / 4 > local.long_gap_) {
+        local.run_turns(local_walk, last - 4 * local.long_gap_, sink);
+      } else {
+        one_edge();
+      }
     }
     *this = local;
     walk = local_walk;
+  }
+
+  /// Whole A-B periods while one starts up to `last_start`: the pins are constants, and no clock can overflow. This is
+  /// what keeps the walk ahead of AbCounter even where every clock has an edge.
+  template <class Word, class Sink>
+  void run_turns(Walk<Word>& walk, std::uint64_t last_start, Sink& sink) {
+    Word slack = walk.slack;
+    std::uint64_t clock = next_clock_;
+    const Word rest = walk.rest;
+    const Word back = walk.back;
+    const std::uint64_t short_gap = short_gap_;
+    const std::uint64_t extra = long_gap_ - short_gap_;
+    std::uint64_t turns = 0;
+    const auto quarter = [&](std::uint64_t number) {
+      sink(AbEdge{clock, pins_of_quarter(number)});
+      const bool longer = slack < rest;
+      slack += longer ? back : Word{0} - rest;
+      clock += short_gap + (longer ? extra : 0);
+    };
+    for (; clock <= last_start; ++turns) {
+      quarter(1);
+      quarter(2);
+      quarter(3);
+      quarter(4);
+    }
+    walk.slack = slack;
+    next_clock_ = clock;
+    edges_ += 4 * turns;
   }
 
   AbRegisters registers_;

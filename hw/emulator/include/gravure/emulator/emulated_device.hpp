@@ -29,9 +29,9 @@ class EmulatedDevice final : public DeviceLink {
  public:
   explicit EmulatedDevice(PinObserver* observer = nullptr) : observer_(observer) {}
 
-  /// Loads the registers and puts the machine at `first_line` of `first_revolution`. device, naming field, value and allowed
-  /// range, where a register would not take its value, where the job would outlast 2^63 - 1 ticks, or while a fault
-  /// stands; the machine then is as before.
+  /// Loads the registers and puts the machine at `first_line` of `first_revolution`. device, naming field, value and
+  /// allowed range, where a register would not take its value, where the job would outlast 2^63 - 1 ticks, or while a
+  /// fault stands; the machine then is as before.
   Result<void> configure(const DeviceSetup& setup) override;
 
   /// Runs one line time. device where the frame is refused: in this order sequence (exactly the next line), shape (bits
