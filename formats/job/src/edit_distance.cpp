@@ -36,22 +36,22 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-std::string suggestion(std::string_view wrong, std::span<const std::string> candidates) {
+Suggestion suggest(std::string_view wrong, std::span<const Candidate> candidates) {
   const std::string_view compared = wrong.substr(0, kMaxCompared);
-  const std::string* nearest = nullptr;
+  const Candidate* nearest = nullptr;
   std::size_t nearest_distance = 0;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(compared, candidate);
+  for (const Candidate& candidate : candidates) {
+    const std::size_t distance = edit_distance(compared, candidate.word);
     if (nearest == nullptr || distance < nearest_distance) {
       nearest = &candidate;
       nearest_distance = distance;
     }
   }
   if (nearest == nullptr) {
-    return "";
+    return {};
   }
-  const bool is_near = nearest_distance <= std::max<std::size_t>(2, nearest->size() / 3);
-  return is_near ? "; did you mean " + *nearest + "?" : "; the nearest known one is " + *nearest;
+  const bool is_near = nearest_distance <= std::max<std::size_t>(2, nearest->word.size() / 3);
+  return {is_near ? "; did you mean " + nearest->shown + "?" : "; the nearest known one is " + nearest->shown, is_near};
 }
 
 }  // namespace gravure::job_file

@@ -27,21 +27,25 @@ std::string key_advice(std::string_view section, std::string_view key, const Vio
   if (violations.is_full()) {
     return "";  // will not be shown
   }
-  std::vector<std::string> candidates;
+  std::vector<Candidate> candidates;
   for (const KeySpec& spec : key_table()) {
     if (spec.key == key) {
       return "; it belongs in [" + std::string(spec.section) + "]";
     }
     if (spec.section == section) {
-      candidates.emplace_back(spec.key);
+      candidates.push_back({spec.key, std::string(spec.key)});
     }
   }
+  const Suggestion here = suggest(key, candidates);
+  if (here.is_near) {
+    return here.text;
+  }
+  std::vector<Candidate> others;
   for (const KeySpec& spec : key_table()) {
-    if (spec.section != section) {
-      candidates.push_back("[" + std::string(spec.section) + "] " + std::string(spec.key));
-    }
+    others.push_back({spec.key, "[" + std::string(spec.section) + "] " + std::string(spec.key)});
   }
-  return suggestion(key, candidates);
+  const Suggestion elsewhere = suggest(key, others);
+  return elsewhere.is_near || candidates.empty() ? elsewhere.text : here.text;
 }
 
 /// Reads one document into a Job, gathering violations.
@@ -82,17 +86,20 @@ class Reader {
     if (!section.is_table) {
       report_loose_value(section, is_known);
     } else if (!is_known) {
-      std::vector<std::string> names;
-      for (const std::string_view name : section_names()) {
-        names.push_back("[" + std::string(name) + "]");
-      }
-      violations_.add(section.at, bracketed(section.name) + ": unknown section" +
-                                      (violations_.is_full() ? "" : suggestion("[" + section.name + "]", names)));
+      violations_.add(section.at, bracketed(section.name) + ": unknown section" + section_advice(section.name));
     } else {
       for (const Entry& entry : section.entries) {
         read_entry(section, entry);
       }
     }
+  }
+
+  std::string section_advice(const std::string& wrong) const {
+    std::vector<Candidate> names;
+    for (const std::string_view name : section_names()) {
+      names.push_back({name, bracketed(name)});
+    }
+    return violations_.is_full() ? "" : suggest(wrong, names).text;
   }
 
   void report_loose_value(const Section& section, bool is_known) {
@@ -198,11 +205,11 @@ class Reader {
   bool check_word(const KeySpec& spec, const Value& value) {
     const bool is_known = contains(spec.words, value.text);
     if (!is_known) {
-      std::vector<std::string> quoted;
+      std::vector<Candidate> quoted;
       for (const std::string_view word : spec.words) {
-        quoted.push_back("\"" + std::string(word) + "\"");
+        quoted.push_back({word, "\"" + std::string(word) + "\""});
       }
-      violations_.add(value.at, must_be(spec, value) + suggestion("\"" + value.text + "\"", quoted));
+      violations_.add(value.at, must_be(spec, value) + suggest(value.text, quoted).text);
     }
     return is_known;
   }
@@ -243,7 +250,7 @@ class Reader {
       if (spec.section == section.name && spec.presence == Presence::required && section.find(spec.key) == nullptr) {
         const bool is_polarity = spec.key == "fires";
         violations_.add(section.at,
-                        bracketed(section.name) + " " + std::string(spec.key) + " is missing: say " +
+                        bracketed(section.name) + " " + std::string(spec.key) + " is missing: give " +
                             expectation(spec) +
                             (is_polarity ? ", the pixels that get a pulse; polarity is never assumed" : ""));
       }

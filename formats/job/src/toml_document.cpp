@@ -185,7 +185,7 @@ std::string_view kind_name(Kind kind) {
     case Kind::decimal:
       return "a decimal number";
     case Kind::not_finite:
-      return "infinite or not a number";
+      return "inf or nan";
     case Kind::text:
       return "a string";
     case Kind::array:
