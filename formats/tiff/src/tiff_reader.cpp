@@ -177,17 +177,33 @@ class RowSource final : public BilevelSource {
                                                 ": its strips are too large to be read other than upwards; rewrite the "
                                                 "file with smaller strips (`tiffcp -r 64`)"};
     }
-    for (std::int64_t row = first_row; row < first_row + row_count; ++row, out += row_bytes_) {
-      clear_messages();
-      if (TIFFReadScanline(tiff(), out, static_cast<std::uint32_t>(row), 0) != 1 || said_anything()) {
-        next_row_ = info_.height;
-        return damage(row);
-      }
-      next_row_ = row + 1;
+    if (info_.random_access) {
+      next_row_ = first_row;
+    } else if (first_row < next_row_) {
+      next_row_ = 0;
+    }
+    skipped_.resize(next_row_ < first_row ? static_cast<std::size_t>(row_bytes_) : 0);
+    while (next_row_ < first_row) {  // not every codec of libtiff can skip rows
+      GRAVURE_CHECK(read_next(skipped_.data()));
+    }
+    for (std::int64_t i = 0; i < row_count; ++i) {
+      GRAVURE_CHECK(read_next(out + i * row_bytes_));
     }
     return {};
   }
 
+  Result<void> read_next(std::byte* out) {
+    clear_messages();
+    const std::int64_t row = next_row_;
+    if (TIFFReadScanline(tiff(), out, static_cast<std::uint32_t>(row), 0) != 1 || said_anything()) {
+      next_row_ = info_.height;  // nothing more upwards of here
+      return damage(row);
+    }
+    ++next_row_;
+    return {};
+  }
+
+  std::vector<std::byte> skipped_;
   std::int64_t next_row_ = 0;
 };
 
