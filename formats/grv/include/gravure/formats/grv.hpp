@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "gravure/core/error.hpp"
+#include "gravure/core/program.hpp"
+
+namespace gravure {
+
+/// How a program file is stored. docs/formats/grv.md describes the file, docs/decisions/grv_integrity.md its checksums.
+struct GrvOptions {
+  enum class Compression : std::uint8_t {
+    zstd,     ///< HDF5 filter 32015: fast and small; other programs need the hdf5plugin package to read the bits
+    deflate,  ///< HDF5 filter 1: slower and larger, read by every HDF5 program
+    none,     ///< the bits as they are
+  };
+  Compression compression = Compression::zstd;
+  int zstd_level = 1;                                ///< 1..19
+  std::int64_t chunk_bytes = std::int64_t{1} << 20;  ///< target size of a chunk; a longer line is a chunk by itself
+};
+
+/// Starts a program file of `layers` layers with `lines_per_layer` lines of `line_bytes` bytes. The same chunks put in
+/// the same order give the same file, byte for byte, whatever the number of threads that encoded them.
+///
+/// encode() refuses a chunk of the wrong size (bad_argument). put() refuses a chunk out of place, put before, or
+/// altered since encode() (bad_argument); a full disk is io. finish() refuses a missing chunk, a header that does not
+/// fit the chunks, fired pixels that do not add up, and set bits beyond the last pixel of a line (bad_argument).
+/// Fails with out_of_range for sizes below 1 or beyond 1 GiB a chunk, io where the file cannot be created.
+Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64_t layers, std::int64_t lines_per_layer,
+                                             std::int64_t line_bytes, const GrvOptions& options = {});
+
+/// Opens a program file and verifies everything in it but the bits, which decode() verifies chunk by chunk: any chunk
+/// can be had without reading the others. Fails with io where the file cannot be read, bad_file where it is no program,
+/// cut off, lengthened or altered (naming the first missing chunk where it is cut), version_mismatch for a format
+/// version other than ProgramHeader::kFormatVersion.
+Result<std::unique_ptr<LineSource>> open_grv(const std::string& path);
+
+}  // namespace gravure

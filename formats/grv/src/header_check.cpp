@@ -1,0 +1,93 @@
+#include "header_check.hpp"
+
+#include <numeric>
+
+namespace gravure::grv {
+namespace {
+
+std::string allowed(std::int64_t value, const std::string& range) {
+  return " = " + std::to_string(value) + ": must be " + range;
+}
+
+Result<void> check_equal(const char* field, std::int64_t value, std::int64_t expected, const char* because,
+                         ErrorCode code) {
+  if (value != expected) {
+    return Error{code, field + allowed(value, std::to_string(expected) + ", " + because)};
+  }
+  return {};
+}
+
+Result<void> check_index(const std::string& field, std::int64_t value, std::int64_t count, ErrorCode code) {
+  if (value < 0 || value >= count) {
+    return Error{code, field + allowed(value, "0 to " + std::to_string(count - 1))};
+  }
+  return {};
+}
+
+Result<void> check_layer(const ProgramHeader& header, std::size_t number, std::int64_t fired, ErrorCode code) {
+  const StoredLayer& layer = header.layers[number];
+  const std::string name = "layer " + std::to_string(number) + ": ";
+  if (layer.starts_reverse && !header.plan.line.bidirectional) {
+    return Error{code, name + "starts right to left, but the plan has lines in one direction only"};
+  }
+  // A program may come without sources (a test pattern); then there is nothing to point at.
+  if (!header.sources.empty()) {
+    GRAVURE_CHECK(check_index(name + "source", layer.source, static_cast<std::int64_t>(header.sources.size()), code));
+  }
+  if (layer.fired_pixels != fired) {
+    return Error{
+        code, name + "fired_pixels" + allowed(layer.fired_pixels, std::to_string(fired) + ", the sum over its chunks")};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_header(const ProgramHeader& header, const Layout& layout,
+                          std::span<const std::int64_t> fired_of_chunks, ErrorCode code) {
+  GRAVURE_CHECK(check_equal("lines per layer", layout.lines_per_layer, header.plan.rotary.lines_per_revolution,
+                            "the plan's lines per revolution", code));
+  GRAVURE_CHECK(check_equal("bytes per line", layout.line_bytes, header.line_bytes(), "for the plan's pixels", code));
+  GRAVURE_CHECK(check_equal("layers in the header", static_cast<std::int64_t>(header.layers.size()), layout.layers,
+                            "the number of layers stored", code));
+  GRAVURE_CHECK(check_equal("revolutions in the table", static_cast<std::int64_t>(header.layer_of_revolution.size()),
+                            header.plan.job.revolutions, "the plan's revolutions", code));
+  for (std::size_t r = 0; r < header.layer_of_revolution.size(); ++r) {
+    GRAVURE_CHECK(
+        check_index("layer of revolution " + std::to_string(r), header.layer_of_revolution[r], layout.layers, code));
+  }
+  const auto chunks = static_cast<std::size_t>(layout.chunks_per_layer());
+  for (std::size_t i = 0; i < header.layers.size(); ++i) {
+    const auto of_layer = fired_of_chunks.subspan(i * chunks, chunks);
+    GRAVURE_CHECK(check_layer(header, i, std::accumulate(of_layer.begin(), of_layer.end(), std::int64_t{0}), code));
+  }
+  return {};
+}
+
+std::vector<PlanNumber> plan_numbers(const Plan& plan) {
+  return {
+      {"seed_hz", plan.clock.seed_hz, "Hz"},
+      {"fpga_hz", plan.clock.fpga_hz, "Hz"},
+      {"pulse_divider", plan.clock.pulse_divider, "seed pulses per pulse slot"},
+      {"ticks_per_slot", plan.clock.ticks_per_slot, "FPGA ticks per pulse slot"},
+      {"pixels_per_line", plan.line.pixels, "pulse slots in the marking window"},
+      {"slots_per_line", plan.line.slots, "pulse slots, run-in and run-out included"},
+      {"ticks_per_line", plan.line.ticks, "FPGA ticks"},
+      {"forward_first_slot", plan.line.forward_first_slot, "pulse slots"},
+      {"reverse_first_slot", plan.line.reverse_first_slot, "pulse slots"},
+      {"offset_slots", plan.line.offset_slots, "pulse slots"},
+      {"offset_remainder_ticks", plan.line.offset_remainder_ticks, "FPGA ticks"},
+      {"bidirectional", std::int64_t{plan.line.bidirectional}, "1 yes, 0 no"},
+      {"lines_per_revolution", plan.rotary.lines_per_revolution, "lines"},
+      {"ticks_per_revolution", plan.rotary.ticks_per_revolution, "FPGA ticks"},
+      {"counter_bits", std::int64_t{plan.ab.counter_bits}, "bits"},
+      {"prescaler", plan.ab.prescaler, "FPGA ticks per addition"},
+      {"increment", plan.ab.increment, "counts per addition"},
+      {"fraction_num", plan.ab.fraction_num, "counts / fraction_den per addition"},
+      {"fraction_den", plan.ab.fraction_den, "1"},
+      {"revolutions", plan.job.revolutions, "revolutions"},
+      {"job_ticks", plan.job.ticks, "FPGA ticks"},
+  };
+}
+
+}  // namespace gravure::grv

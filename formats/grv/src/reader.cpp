@@ -1,0 +1,230 @@
+#include "reader.hpp"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "bit_count.hpp"
+#include "codec.hpp"
+#include "gravure/formats/grv.hpp"
+#include "hdf5_channel.hpp"
+#include "hdf5_data.hpp"
+#include "hdf5_session.hpp"
+#include "header_check.hpp"
+#include "header_io.hpp"
+#include "layout.hpp"
+#include "seal.hpp"
+
+namespace gravure {
+namespace grv {
+namespace {
+
+/// What is known of a program before its first chunk is read.
+struct Contents {
+  ProgramHeader header;
+  Layout layout;
+  ChunkTables tables;
+  std::vector<std::uint64_t> checksums;
+  std::vector<std::int64_t> fired;
+  Compression compression = Compression::none;
+};
+
+Result<Compression> read_compression(hid_t creation) {
+  const int filters = H5Pget_nfilters(creation);
+  if (filters == 0) {
+    return Compression::none;
+  }
+  unsigned flags = 0;
+  std::size_t values = 0;
+  unsigned config = 0;
+  const H5Z_filter_t id = H5Pget_filter2(creation, 0, &flags, &values, nullptr, 0, nullptr, &config);
+  if (filters == 1 && id == kZstdFilter) {
+    return Compression::zstd;
+  }
+  if (filters == 1 && id == H5Z_FILTER_DEFLATE) {
+    return Compression::deflate;
+  }
+  return Error{ErrorCode::bad_file, "layers/bits: compressed by HDF5 filter " + std::to_string(id) +
+                                        ": must be 32015 (zstd), 1 (deflate) or none"};
+}
+
+/// The bits' shape and chunks must be those of the seal, so that other HDF5 programs see what we see.
+Result<Compression> check_bits(hid_t file, const Layout& layout) {
+  const Handle bits(H5Dopen2(file, "layers/bits", H5P_DEFAULT), H5Dclose);
+  if (!bits.valid()) {
+    return Error{ErrorCode::bad_file, "layers/bits: missing"};
+  }
+  const Handle space(H5Dget_space(bits.get()), H5Sclose);
+  const Handle type(H5Dget_type(bits.get()), H5Tclose);
+  const Handle creation(H5Dget_create_plist(bits.get()), H5Pclose);
+  std::array<hsize_t, 3> shape = {};
+  std::array<hsize_t, 3> chunk = {};
+  if (H5Sget_simple_extent_ndims(space.get()) != 3 || H5Pget_layout(creation.get()) != H5D_CHUNKED ||
+      H5Tequal(type.get(), H5T_STD_U8LE) <= 0 || H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr) != 3 ||
+      H5Pget_chunk(creation.get(), 3, chunk.data()) != 3) {
+    return Error{ErrorCode::bad_file, "layers/bits: is no chunked table [layers][lines][bytes] of bytes"};
+  }
+  const auto as_size = [](std::int64_t value) { return static_cast<hsize_t>(value); };
+  const std::array<hsize_t, 3> expected = {as_size(layout.layers), as_size(layout.lines_per_layer),
+                                           as_size(layout.line_bytes)};
+  const std::array<hsize_t, 3> expected_chunk = {1, as_size(layout.lines_per_chunk), expected[2]};
+  if (shape != expected || chunk != expected_chunk) {
+    return Error{ErrorCode::bad_file, "layers/bits: has " + std::to_string(shape[0]) + " layers of " +
+                                          std::to_string(shape[1]) + " lines of " + std::to_string(shape[2]) +
+                                          " bytes, " + std::to_string(chunk[1]) + " lines a chunk, the seal says " +
+                                          std::to_string(expected[0]) + ", " + std::to_string(expected[1]) + ", " +
+                                          std::to_string(expected[2]) + ", " + std::to_string(expected_chunk[1])};
+  }
+  return read_compression(creation.get());
+}
+
+Result<void> read_contents(hid_t file, Contents& contents) {
+  const Layout& layout = contents.layout;
+  GRAVURE_TRY(contents.header, read_header(file, layout));
+  GRAVURE_TRY(contents.compression, check_bits(file, layout));
+  const std::array<hsize_t, 2> shape = {static_cast<hsize_t>(layout.layers),
+                                        static_cast<hsize_t>(layout.chunks_per_layer())};
+  GRAVURE_TRY(contents.checksums, read_table<std::uint64_t>(file, "layers/checksums", shape));
+  GRAVURE_TRY(contents.fired, read_table<std::int64_t>(file, "layers/chunk_fired_pixels", shape));
+  return check_header(contents.header, layout, contents.fired, ErrorCode::bad_file);
+}
+
+/// Reads what HDF5 has to say; the file has been verified before, so that the library meets no damaged structure.
+Result<void> read_hdf5(const std::shared_ptr<Hdf5Channel>& channel, Contents& contents) {
+  const Hdf5Session session;
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  const std::string& path = channel->file().path();
+  if (!set_channel(access.get(), channel)) {
+    return Error{ErrorCode::io, path + ": the HDF5 file driver is not available: " + hdf5_reason()};
+  }
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  if (!file.valid()) {
+    const Error unreadable{ErrorCode::bad_file, path + ": HDF5 cannot read it: " + hdf5_reason()};
+    return channel->failure().value_or(unreadable);
+  }
+  if (const auto read = read_contents(file.get(), contents); !read) {
+    return channel->failure().value_or(Error{read.error().code, path + ": " + read.error().message});
+  }
+  return {};
+}
+
+}  // namespace
+
+/// A verified program file. Chunks are read straight from their places in the file, without the HDF5 library.
+class GrvSource final : public LineSource {
+ public:
+  GrvSource(std::shared_ptr<Hdf5Channel> channel, Contents contents)
+      : channel_(std::move(channel)), contents_(std::move(contents)) {}
+
+  const ProgramHeader& header() const noexcept override { return contents_.header; }
+  std::int64_t lines_per_chunk() const noexcept override { return contents_.layout.lines_per_chunk; }
+  Result<StoredChunk> fetch(ChunkAddress address) override;
+  Result<void> decode(const StoredChunk& chunk, std::span<std::byte> out) const override;
+
+ private:
+  std::string place(ChunkAddress address) const;
+  Error damaged(ChunkAddress address, const std::string& why) const {
+    return {ErrorCode::bad_file, place(address) + ": " + why + ": get a good copy, or compile the job again"};
+  }
+  Result<void> unpack_whole(const StoredChunk& chunk, std::span<std::byte> out) const;
+  Result<void> unpack_partial(const StoredChunk& chunk, std::span<std::byte> out) const;
+
+  std::shared_ptr<Hdf5Channel> channel_;
+  Contents contents_;
+};
+
+std::string GrvSource::place(ChunkAddress address) const {
+  const std::size_t index = contents_.layout.index_of(address);
+  return channel_->file().path() + ": " + contents_.layout.describe(address) + " at byte " +
+         std::to_string(contents_.tables.offset_bytes[index]);
+}
+
+Result<StoredChunk> GrvSource::fetch(ChunkAddress address) {
+  if (!contents_.layout.contains(address)) {
+    return Error{ErrorCode::bad_argument, channel_->file().path() + ": " + contents_.layout.describe(address) +
+                                              ": there are " + std::to_string(contents_.layout.layers) + " layers of " +
+                                              std::to_string(contents_.layout.chunks_per_layer()) + " chunks"};
+  }
+  const std::size_t index = contents_.layout.index_of(address);
+  StoredChunk chunk;
+  chunk.address = address;
+  chunk.bytes.resize(static_cast<std::size_t>(contents_.tables.stored_bytes[index]));
+  // Compressed chunks are shorter than raw ones by a tenth at least, so the length tells which it is.
+  const bool raw = chunk.bytes.size() == static_cast<std::size_t>(contents_.layout.chunk_bytes());
+  chunk.filter_mask = raw && contents_.compression != Compression::none ? 1U : 0U;
+  chunk.checksum = contents_.checksums[index];
+  chunk.fired_pixels = contents_.fired[index];
+  GRAVURE_TRY(const std::size_t got, channel_->file().read(contents_.tables.offset_bytes[index], chunk.bytes));
+  if (got != chunk.bytes.size()) {
+    return damaged(address, "the file has become shorter since it was opened");
+  }
+  return chunk;
+}
+
+Result<void> GrvSource::unpack_whole(const StoredChunk& chunk, std::span<std::byte> out) const {
+  const bool raw = chunk.filter_mask != 0 || contents_.compression == Compression::none;
+  if (const auto unpacked = unpack(contents_.compression, raw, chunk.bytes, out); !unpacked) {
+    return damaged(chunk.address, unpacked.error().message);
+  }
+  return {};
+}
+
+Result<void> GrvSource::unpack_partial(const StoredChunk& chunk, std::span<std::byte> out) const {
+  thread_local std::vector<std::byte> whole;
+  whole.resize(static_cast<std::size_t>(contents_.layout.chunk_bytes()));
+  GRAVURE_CHECK(unpack_whole(chunk, whole));
+  const auto rest = std::span(whole).subspan(out.size());
+  if (std::any_of(rest.begin(), rest.end(), [](std::byte byte) { return byte != std::byte{0}; })) {
+    return damaged(chunk.address, "pixels fire behind the last line");
+  }
+  std::copy_n(whole.begin(), out.size(), out.begin());
+  return {};
+}
+
+Result<void> GrvSource::decode(const StoredChunk& chunk, std::span<std::byte> out) const {
+  const Layout& layout = contents_.layout;
+  const bool known = layout.contains(chunk.address);
+  const auto bytes = known ? static_cast<std::size_t>(layout.lines_in(chunk.address.chunk) * layout.line_bytes) : 0;
+  if (!known || out.size() != bytes) {
+    return Error{ErrorCode::bad_argument, channel_->file().path() + ": " + layout.describe(chunk.address) +
+                                              ": no such chunk, or room for " + std::to_string(out.size()) +
+                                              " bytes instead of " + std::to_string(bytes)};
+  }
+  const std::size_t index = layout.index_of(chunk.address);
+  if (hash_of(chunk.bytes) != contents_.checksums[index]) {
+    return damaged(chunk.address, "altered, its checksum does not hold");
+  }
+  const bool whole = bytes == static_cast<std::size_t>(layout.chunk_bytes());
+  GRAVURE_CHECK(whole ? unpack_whole(chunk, out) : unpack_partial(chunk, out));
+  if ((merge_last_bytes(out, layout.line_bytes) & unused_bits(contents_.header.plan.line.pixels)) != 0) {
+    return damaged(chunk.address, "bits are set beyond the last pixel of a line");
+  }
+  if (count_bits(out) != contents_.fired[index]) {
+    return damaged(chunk.address, std::to_string(count_bits(out)) + " pixels fire, the table says " +
+                                      std::to_string(contents_.fired[index]));
+  }
+  return {};
+}
+
+Result<std::unique_ptr<LineSource>> open_program(std::unique_ptr<ByteFile> file) {
+  auto channel = std::make_shared<Hdf5Channel>(std::move(file));
+  GRAVURE_TRY(Sealed sealed, verify_seal(channel->file()));
+  Contents contents;
+  contents.layout = sealed.seal.layout;
+  contents.tables = std::move(sealed.tables);
+  GRAVURE_CHECK(read_hdf5(channel, contents));
+  return std::unique_ptr<LineSource>(std::make_unique<GrvSource>(std::move(channel), std::move(contents)));
+}
+
+}  // namespace grv
+
+Result<std::unique_ptr<LineSource>> open_grv(const std::string& path) {
+  GRAVURE_TRY(auto file, grv::open_file(path, grv::OpenFor::reading, path));
+  return grv::open_program(std::move(file));
+}
+
+}  // namespace gravure

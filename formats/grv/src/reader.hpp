@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "byte_file.hpp"
+#include "gravure/core/error.hpp"
+#include "gravure/core/program.hpp"
+
+namespace gravure::grv {
+
+/// open_grv() from any bytes.
+Result<std::unique_ptr<LineSource>> open_program(std::unique_ptr<ByteFile> file);
+
+}  // namespace gravure::grv

@@ -1,0 +1,320 @@
+#include <hdf5.h>
+
+#include <array>
+#include <atomic>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bit_count.hpp"
+#include "byte_file.hpp"
+#include "codec.hpp"
+#include "gravure/core/file_output.hpp"
+#include "gravure/formats/grv.hpp"
+#include "hdf5_channel.hpp"
+#include "hdf5_data.hpp"
+#include "hdf5_session.hpp"
+#include "header_check.hpp"
+#include "header_io.hpp"
+#include "layout.hpp"
+#include "seal.hpp"
+
+namespace gravure {
+namespace grv {
+namespace {
+
+/// Everything of the open HDF5 file, made and used within an Hdf5Session; members close in reverse order.
+struct OpenProgram {
+  Handle file;
+  Handle layers;
+  Handle offset_table;
+  Handle stored_table;
+  Handle bits;
+};
+
+Result<void> set_filter(hid_t creation, const GrvOptions& options) {
+  herr_t status = 0;
+  if (options.compression == Compression::zstd) {
+    const auto level = static_cast<unsigned>(options.zstd_level);
+    // Optional: a chunk may be stored raw, and programs without the filter can still read everything else.
+    status = H5Pset_filter(creation, kZstdFilter, H5Z_FLAG_OPTIONAL, 1, &level);
+  } else if (options.compression == Compression::deflate) {
+    status = H5Pset_deflate(creation, 1);
+  }
+  if (status < 0) {
+    return write_failure("the compression of layers/bits");
+  }
+  return {};
+}
+
+Result<Handle> create_bits(hid_t layers_group, const Layout& layout, const GrvOptions& options) {
+  const std::array<hsize_t, 3> shape = {static_cast<hsize_t>(layout.layers),
+                                        static_cast<hsize_t>(layout.lines_per_layer),
+                                        static_cast<hsize_t>(layout.line_bytes)};
+  const std::array<hsize_t, 3> chunk = {1, static_cast<hsize_t>(layout.lines_per_chunk), shape[2]};
+  const Handle space = plain_space(shape);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);
+  H5Pset_chunk(creation.get(), 3, chunk.data());
+  H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);
+  GRAVURE_CHECK(set_filter(creation.get(), options));
+  Handle bits(H5Dcreate2(layers_group, "bits", H5T_STD_U8LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+              H5Dclose);
+  if (!bits.valid()) {
+    return write_failure("layers/bits");
+  }
+  GRAVURE_CHECK(write_text_attribute(bits.get(), "unit", "8 pulse slots, most significant bit first, 1 fires"));
+  GRAVURE_CHECK(write_text_attribute(bits.get(), "axes", "layer, line in time order, byte in time order"));
+  return bits;
+}
+
+/// The file with all that is known before the first chunk. The chunk tables come first, so that a file cut off later
+/// still says which chunks are gone.
+Result<OpenProgram> create_program(const std::shared_ptr<Hdf5Channel>& channel, const Layout& layout,
+                                   const GrvOptions& options) {
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_userblock(creation.get(), Seal::kBytes);
+  H5Pset_obj_track_times(creation.get(), false);
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  // The oldest structures: every HDF5 of the last fifteen years reads them.
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  if (!set_channel(access.get(), channel)) {
+    return write_failure("through the HDF5 file driver");
+  }
+  OpenProgram program;
+  program.file = {H5Fcreate(channel->file().path().c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose};
+  if (!program.file.valid()) {
+    return write_failure("the HDF5 file");
+  }
+  GRAVURE_CHECK(write_root(program.file.get()));
+  GRAVURE_TRY(program.layers, create_group(program.file.get(), "layers"));
+  const std::array<hsize_t, 2> tables = {static_cast<hsize_t>(layout.layers),
+                                         static_cast<hsize_t>(layout.chunks_per_layer())};
+  GRAVURE_TRY(program.offset_table, create_table(program.layers.get(), "offset_bytes", H5T_STD_U64LE, tables));
+  GRAVURE_TRY(program.stored_table, create_table(program.layers.get(), "stored_bytes", H5T_STD_U64LE, tables));
+  GRAVURE_CHECK(write_text_attribute(program.offset_table.get(), "unit", "bytes from the start of the file"));
+  GRAVURE_CHECK(write_text_attribute(program.stored_table.get(), "unit", "bytes"));
+  GRAVURE_TRY(program.bits, create_bits(program.layers.get(), layout, options));
+  return program;
+}
+
+}  // namespace
+
+/// The chunks of a program on their way into a file.
+class GrvSink final : public LineSink {
+ public:
+  GrvSink(FileOutput output, std::shared_ptr<Hdf5Channel> channel, OpenProgram program, const Layout& layout,
+          const GrvOptions& options)
+      : output_(std::move(output)),
+        channel_(std::move(channel)),
+        program_(std::move(program)),
+        layout_(layout),
+        options_(options),
+        tables_{std::vector<std::uint64_t>(count()), std::vector<std::uint64_t>(count())},
+        checksums_(count()),
+        fired_(count()) {}
+  GrvSink(const GrvSink&) = delete;
+  GrvSink& operator=(const GrvSink&) = delete;
+  ~GrvSink() override {
+    const Hdf5Session session;
+    give_up();
+  }
+
+  std::int64_t lines_per_chunk() const noexcept override { return layout_.lines_per_chunk; }
+  Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const override;
+  Result<void> put(const StoredChunk& chunk) override;
+  Result<void> finish(const ProgramHeader& header) override;
+
+ private:
+  std::size_t count() const { return static_cast<std::size_t>(layout_.chunks()); }
+  Error refuse(const std::string& what) const { return {ErrorCode::bad_argument, output_.path() + ": " + what}; }
+  Result<void> check_open() const;
+  Result<void> check_chunk(const StoredChunk& chunk) const;
+  Result<void> check_complete(const ProgramHeader& header) const;
+  Result<void> write_all(const ProgramHeader& header);
+  Result<void> write_chunk_tables();
+  Error fail(const Error& error);
+  void give_up();
+
+  FileOutput output_;
+  std::shared_ptr<Hdf5Channel> channel_;
+  OpenProgram program_;
+  Layout layout_;
+  GrvOptions options_;
+  ChunkTables tables_;  ///< stored_bytes 0: not put yet
+  std::vector<std::uint64_t> checksums_;
+  std::vector<std::int64_t> fired_;
+  mutable std::atomic<std::uint8_t> last_bytes_{0};  ///< of all lines encoded, OR-ed
+};
+
+Result<StoredChunk> GrvSink::encode(ChunkAddress address, std::span<const std::byte> lines) const {
+  if (!layout_.contains(address)) {
+    return refuse(layout_.describe(address) + ": there are " + std::to_string(layout_.layers) + " layers of " +
+                  std::to_string(layout_.chunks_per_layer()) + " chunks");
+  }
+  const auto bytes = static_cast<std::size_t>(layout_.lines_in(address.chunk) * layout_.line_bytes);
+  if (lines.size() != bytes) {
+    return refuse(layout_.describe(address) + ": " + std::to_string(lines.size()) + " bytes, must be " +
+                  std::to_string(bytes));
+  }
+  last_bytes_.fetch_or(merge_last_bytes(lines, layout_.line_bytes), std::memory_order_relaxed);
+  const auto whole = static_cast<std::size_t>(layout_.chunk_bytes());
+  thread_local std::vector<std::byte> padded;
+  if (bytes < whole) {
+    padded.assign(lines.begin(), lines.end());
+    padded.resize(whole, std::byte{0});
+  }
+  GRAVURE_TRY(Packed packed, pack(options_.compression, options_.zstd_level,
+                                  bytes < whole ? std::span<const std::byte>(padded) : lines));
+  StoredChunk chunk;
+  chunk.address = address;
+  chunk.bytes = std::move(packed.bytes);
+  chunk.filter_mask = packed.raw && options_.compression != Compression::none ? 1U : 0U;
+  chunk.checksum = hash_of(chunk.bytes);
+  chunk.fired_pixels = count_bits(lines);
+  return chunk;
+}
+
+Result<void> GrvSink::check_open() const {
+  if (!program_.file.valid()) {
+    return refuse("finished, or given up after an earlier error: start again");
+  }
+  return {};
+}
+
+Result<void> GrvSink::check_chunk(const StoredChunk& chunk) const {
+  if (!layout_.contains(chunk.address)) {
+    return refuse(layout_.describe(chunk.address) + ": no such chunk");
+  }
+  if (tables_.stored_bytes[layout_.index_of(chunk.address)] != 0) {
+    return refuse(layout_.describe(chunk.address) + ": put before");
+  }
+  const auto whole = static_cast<std::size_t>(layout_.chunk_bytes());
+  const bool raw = chunk.filter_mask != 0 || options_.compression == Compression::none;
+  const bool size_fits = raw ? chunk.bytes.size() == whole : !chunk.bytes.empty() && chunk.bytes.size() < whole;
+  if (!size_fits || chunk.filter_mask > 1 || hash_of(chunk.bytes) != chunk.checksum) {
+    return refuse(layout_.describe(chunk.address) + ": altered since encode()");
+  }
+  return {};
+}
+
+/// Prefers what the operating system said to what HDF5 made of it, closes the file and removes it.
+Error GrvSink::fail(const Error& error) {
+  const Error told = channel_->failure().value_or(Error{error.code, output_.path() + ": " + error.message});
+  give_up();
+  return told;
+}
+
+void GrvSink::give_up() {
+  channel_->abandon();
+  program_ = {};
+  FileOutput discarded = std::move(output_);
+}
+
+Result<void> GrvSink::put(const StoredChunk& chunk) {
+  GRAVURE_CHECK(check_open());
+  GRAVURE_CHECK(check_chunk(chunk));
+  const Hdf5Session session;
+  const std::array<hsize_t, 3> place = {static_cast<hsize_t>(chunk.address.layer),
+                                        static_cast<hsize_t>(layout_.first_line(chunk.address.chunk)), 0};
+  channel_->watch(chunk.bytes.data());
+  if (H5Dwrite_chunk(program_.bits.get(), H5P_DEFAULT, chunk.filter_mask, place.data(), chunk.bytes.size(),
+                     chunk.bytes.data()) < 0) {
+    return fail(write_failure(layout_.describe(chunk.address)));
+  }
+  const std::optional<std::uint64_t> offset = channel_->watched_offset();
+  if (!offset) {
+    return fail({ErrorCode::io, "HDF5 did not write " + layout_.describe(chunk.address) + " straight through"});
+  }
+  const std::size_t index = layout_.index_of(chunk.address);
+  tables_.offset_bytes[index] = *offset;
+  tables_.stored_bytes[index] = chunk.bytes.size();
+  checksums_[index] = chunk.checksum;
+  fired_[index] = chunk.fired_pixels;
+  return {};
+}
+
+Result<void> GrvSink::check_complete(const ProgramHeader& header) const {
+  for (std::size_t i = 0; i < count(); ++i) {
+    if (tables_.stored_bytes[i] == 0) {
+      return refuse(layout_.describe(layout_.address_of(i)) + ": was not put");
+    }
+  }
+  if (header.format_version != ProgramHeader::kFormatVersion) {
+    return refuse("format_version = " + std::to_string(header.format_version) + ": this gravure writes " +
+                  std::to_string(ProgramHeader::kFormatVersion));
+  }
+  if (const auto checked = check_header(header, layout_, fired_, ErrorCode::bad_argument); !checked) {
+    return refuse(checked.error().message);
+  }
+  if ((last_bytes_.load() & unused_bits(header.plan.line.pixels)) != 0) {
+    return refuse("a line has bits set beyond its last pixel, number " + std::to_string(header.plan.line.pixels - 1));
+  }
+  return {};
+}
+
+Result<void> GrvSink::write_chunk_tables() {
+  const std::array<hsize_t, 2> shape = {static_cast<hsize_t>(layout_.layers),
+                                        static_cast<hsize_t>(layout_.chunks_per_layer())};
+  GRAVURE_CHECK(
+      write_values(program_.offset_table.get(), H5T_NATIVE_UINT64, tables_.offset_bytes.data(), "layers/offset_bytes"));
+  GRAVURE_CHECK(
+      write_values(program_.stored_table.get(), H5T_NATIVE_UINT64, tables_.stored_bytes.data(), "layers/stored_bytes"));
+  GRAVURE_CHECK(write_table<std::uint64_t>(program_.layers.get(), "checksums", checksums_, shape,
+                                           "XXH3-64 of the chunk as stored"));
+  return write_table<std::int64_t>(program_.layers.get(), "chunk_fired_pixels", fired_, shape, "pixels");
+}
+
+Result<void> GrvSink::write_all(const ProgramHeader& header) {
+  GRAVURE_CHECK(write_chunk_tables());
+  GRAVURE_CHECK(write_header(program_.file.get(), program_.layers.get(), header));
+  const haddr_t offset_table_at = H5Dget_offset(program_.offset_table.get());
+  const haddr_t stored_table_at = H5Dget_offset(program_.stored_table.get());
+  if (H5Fflush(program_.file.get(), H5F_SCOPE_GLOBAL) < 0) {
+    return write_failure("the end of the file");
+  }
+  OpenProgram closing = std::move(program_);
+  closing.bits.reset();
+  closing.stored_table.reset();
+  closing.offset_table.reset();
+  closing.layers.reset();
+  if (!closing.file.reset()) {
+    return write_failure("the end of the file");
+  }
+  return write_seal(channel_->file(), layout_, tables_, offset_table_at, stored_table_at);
+}
+
+Result<void> GrvSink::finish(const ProgramHeader& header) {
+  GRAVURE_CHECK(check_open());
+  GRAVURE_CHECK(check_complete(header));
+  {
+    const Hdf5Session session;
+    if (const auto written = write_all(header); !written) {
+      return fail(written.error());
+    }
+  }
+  return output_.commit();
+}
+
+}  // namespace grv
+
+Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64_t layers, std::int64_t lines_per_layer,
+                                             std::int64_t line_bytes, const GrvOptions& options) {
+  if (options.zstd_level < 1 || options.zstd_level > 19) {
+    return Error{ErrorCode::out_of_range, "zstd_level = " + std::to_string(options.zstd_level) + ": must be 1 to 19"};
+  }
+  GRAVURE_TRY(const grv::Layout layout, grv::make_layout(layers, lines_per_layer, line_bytes, options.chunk_bytes));
+  GRAVURE_TRY(FileOutput output, FileOutput::create(path));
+  GRAVURE_TRY(auto file, grv::open_file(output.temporary_path(), grv::OpenFor::writing, path));
+  auto channel = std::make_shared<grv::Hdf5Channel>(std::move(file));
+  const grv::Hdf5Session session;
+  auto program = grv::create_program(channel, layout, options);
+  if (!program) {
+    return channel->failure().value_or(Error{program.error().code, path + ": " + program.error().message});
+  }
+  return std::unique_ptr<LineSink>(
+      std::make_unique<grv::GrvSink>(std::move(output), channel, std::move(program).value(), layout, options));
+}
+
+}  // namespace gravure
