@@ -1,0 +1,90 @@
+#include "check_job.hpp"
+
+#include <limits>
+#include <string>
+
+namespace gravure::sync_plan {
+namespace {
+
+constexpr std::int64_t kMostHz = 1'000'000'000'000;
+constexpr std::int64_t kMostMultiplier = 1'000'000;
+constexpr std::int64_t kMostMillimetres = 1'000'000;
+constexpr std::int64_t kMostMicrometres = 1'000'000'000;
+constexpr int kLeastCounterBits = 8;
+constexpr int kMostCounterBits = 64;
+constexpr int kMostInterpolationBits = 32;
+
+void check_clocks(const Job& job, Violations& violations) {
+  violations.check_range("laser.seed_hz", job.laser.seed_hz, 1, kMostHz);
+  violations.check_range("laser.pulse_divider", job.laser.pulse_divider, 1, kMostCount);
+  violations.check_range("laser.max_pulse_on_demand_hz", job.laser.max_pulse_on_demand_hz, 1, kMostHz);
+  violations.check_range("fpga.clock_multiplier", job.fpga.clock_multiplier, 1, kMostMultiplier);
+  violations.check_range("fpga.counter_bits", job.fpga.counter_bits, kLeastCounterBits, kMostCounterBits);
+  violations.check_range("fpga.max_prescaler", job.fpga.max_prescaler, 1, std::numeric_limits<std::uint64_t>::max());
+}
+
+void check_scanner(const ScannerSettings& scanner, Violations& violations) {
+  violations.check_positive("scanner.pixel_pitch_um", scanner.pixel_pitch_um, kMostMicrometres);
+  violations.check_range("scanner.slots_per_microvector", scanner.slots_per_microvector, 1, kMostCount);
+  violations.check_range("scanner.turn_slots", scanner.turn_slots, 0, kMostCount);
+  violations.check_range("scanner.max_extra_slots", scanner.max_extra_slots, 0, kMostExtraSlots);
+}
+
+/// Exactly one of two keys; says which, if not.
+void check_one_of(std::string_view first, bool has_first, std::string_view second, bool has_second,
+                  Violations& violations) {
+  if (has_first && has_second) {
+    violations.refuse_missing(
+        first, "and " + std::string(second) + " are both given: they fix the same thing twice; " + "keep one of them");
+  }
+  if (!has_first && !has_second) {
+    violations.refuse_missing(first,
+                              "and " + std::string(second) + " are both missing: exactly one of them must be given");
+  }
+}
+
+void check_workpiece(const RotarySettings& rotary, Violations& violations) {
+  check_one_of("rotary.diameter_mm", rotary.diameter_mm.has_value(), "rotary.circumference_mm",
+               rotary.circumference_mm.has_value(), violations);
+  check_one_of("rotary.line_pitch_um", rotary.line_pitch_um.has_value(), "rotary.lines_per_revolution",
+               rotary.lines_per_revolution.has_value(), violations);
+  if (rotary.diameter_mm) {
+    violations.check_positive("rotary.diameter_mm", *rotary.diameter_mm, kMostMillimetres);
+  }
+  if (rotary.circumference_mm) {
+    violations.check_positive("rotary.circumference_mm", *rotary.circumference_mm, kMostMillimetres);
+  }
+  if (rotary.line_pitch_um) {
+    violations.check_positive("rotary.line_pitch_um", *rotary.line_pitch_um, kMostMicrometres);
+  }
+  if (rotary.lines_per_revolution) {
+    violations.check_range("rotary.lines_per_revolution", *rotary.lines_per_revolution, 1, kMostCount);
+  }
+}
+
+void check_axis(const RotarySettings& rotary, Violations& violations) {
+  violations.check_range("rotary.encoder_lines", rotary.encoder_lines, 1, kMostCount);
+  violations.check_range("rotary.interpolation_bits", rotary.interpolation_bits, 0, kMostInterpolationBits);
+  violations.check_range("rotary.max_ab_hz", rotary.max_ab_hz, 1, kMostHz);
+  const auto gear_side = [](std::int64_t turns) { return turns >= 1 && turns <= kMostMultiplier; };
+  if (!gear_side(rotary.gear_encoder_turns) || !gear_side(rotary.gear_workpiece_turns)) {
+    violations.refuse(
+        ErrorCode::out_of_range, "rotary.gear",
+        "[" + std::to_string(rotary.gear_encoder_turns) + ", " + std::to_string(rotary.gear_workpiece_turns) + "]",
+        "both must be 1 to " + std::to_string(kMostMultiplier) + ", encoder turns : workpiece turns");
+  }
+}
+
+}  // namespace
+
+void check_fields(const Job& job, std::int64_t pixels_per_line, std::int64_t revolutions, Violations& violations) {
+  check_clocks(job, violations);
+  check_scanner(job.scanner, violations);
+  check_workpiece(job.rotary, violations);
+  check_axis(job.rotary, violations);
+  violations.check_range("image.pixels_per_line", pixels_per_line, 1, kMostCount);
+  violations.check_range("image.revolutions", revolutions, 1, std::numeric_limits<std::int64_t>::max());
+  violations.check_positive("limits.seam_um", job.limits.seam_um, kMostMicrometres);
+}
+
+}  // namespace gravure::sync_plan

@@ -1,0 +1,73 @@
+#include "plan_warnings.hpp"
+
+#include "text.hpp"
+
+namespace gravure::sync_plan {
+namespace {
+
+void warn_drift(const Plan& plan, std::vector<std::string>& warnings) {
+  const AbPlan& ab = plan.ab;
+  const Rational drift_um = ab.drift_um_per_revolution * Rational(plan.job.revolutions);
+  if (abs(drift_um) <= ab.seam_limit_um) {
+    return;
+  }
+  warnings.push_back("after " + std::to_string(plan.job.revolutions) + " revolutions the axis " +
+                     (drift_um > 0 ? "leads" : "lags") + " by " + number_text(abs(drift_um)) +
+                     " um, more than limits.seam_um = " + number_text(ab.seam_limit_um) + "; reached after " +
+                     to_string(*ab.lines_until_limit) + " lines, in revolution " +
+                     to_string(*ab.revolutions_until_limit) +
+                     " of the job counted from 1; scanner.max_extra_slots lets the planner look for a better line, "
+                     "fpga.fractional = true has no drift at all");
+}
+
+void warn_pitch(const Job& job, const Plan& plan, std::vector<std::string>& warnings) {
+  if (!job.rotary.line_pitch_um) {
+    return;
+  }
+  const Rational& wanted = *job.rotary.line_pitch_um;
+  const Rational change_percent = abs(plan.rotary.line_pitch_um - wanted) / wanted * Rational(100);
+  if (change_percent > Rational(1, 10)) {
+    warnings.push_back("rotary.line_pitch_um = " + number_text(wanted) + " becomes " +
+                       number_text(plan.rotary.line_pitch_um) + " um (" + number_text(change_percent) +
+                       " % off): a revolution holds whole lines, " + std::to_string(plan.rotary.lines_per_revolution) +
+                       " of them");
+  }
+}
+
+void warn_directions(const Job& job, const Plan& plan, std::vector<std::string>& warnings) {
+  if (plan.line.bidirectional && plan.rotary.lines_per_revolution % 2 != 0) {
+    warnings.push_back("lines per revolution = " + std::to_string(plan.rotary.lines_per_revolution) +
+                       " is odd and the scanner marks both ways: the same line of the next revolution runs the other "
+                       "way (harmless; an even number keeps its direction)");
+  }
+  if (!plan.line.bidirectional && job.scanner.bidirectional_offset_ticks != 0) {
+    warnings.push_back(
+        "scanner.bidirectional_offset_ticks = " + std::to_string(job.scanner.bidirectional_offset_ticks) +
+        " has no effect: scanner.bidirectional = false, so no line runs right to left");
+  }
+}
+
+void warn_encoder(const Plan& plan, std::vector<std::string>& warnings) {
+  const RotaryPlan& rotary = plan.rotary;
+  if (rotary.edges_per_revolution < Rational(rotary.lines_per_revolution)) {
+    warnings.push_back("the axis moves in steps of " +
+                       number_text(rotary.circumference_um / rotary.edges_per_revolution) +
+                       " um (one A-B edge), more than the line pitch of " + number_text(rotary.line_pitch_um) +
+                       " um: rotary.encoder_lines = " + std::to_string(rotary.encoder_lines) +
+                       " with rotary.interpolation_bits = " + std::to_string(rotary.interpolation_bits) +
+                       " is too coarse to place single lines");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> plan_warnings(const Job& job, const Plan& plan) {
+  std::vector<std::string> warnings;
+  warn_drift(plan, warnings);
+  warn_pitch(job, plan, warnings);
+  warn_directions(job, plan, warnings);
+  warn_encoder(plan, warnings);
+  return warnings;
+}
+
+}  // namespace gravure::sync_plan

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "gravure/core/plan.hpp"
+
+namespace gravure::plan_json {
+
+// The one list of what stands where. Archive is the writer or the reader; P is const Plan or Plan. Keys that others
+// rely on come first in each section, in their documented order.
+
+template <class Archive, class P>
+void describe_clock(Archive& archive, P& clock) {
+  archive.field("seed_hz", clock.seed_hz);
+  archive.field("fpga_hz", clock.fpga_hz);
+  archive.field("pulse_hz", clock.pulse_hz);
+  archive.field("ticks_per_slot", clock.ticks_per_slot);
+  archive.field("pulse_divider", clock.pulse_divider);
+}
+
+template <class Archive, class P>
+void describe_line(Archive& archive, P& line) {
+  archive.field("pixels", line.pixels);
+  archive.field("slots", line.slots);
+  archive.field("ticks", line.ticks);
+  archive.field("rate_hz", line.rate_hz);
+  archive.field("scan_speed_m_s", line.scan_speed_m_s);
+  archive.section("marking_first_slot", [&] {
+    archive.field("forward", line.forward_first_slot);
+    archive.field("reverse", line.reverse_first_slot);
+  });
+  archive.field("slots_per_microvector", line.slots_per_microvector);
+  archive.field("pixel_pitch_um", line.pixel_pitch_um);
+  archive.field("bidirectional", line.bidirectional);
+  archive.field("offset_slots", line.offset_slots);
+  archive.field("offset_remainder_ticks", line.offset_remainder_ticks);
+}
+
+template <class Archive, class P>
+void describe_rotary(Archive& archive, P& rotary) {
+  archive.field("lines_per_revolution", rotary.lines_per_revolution);
+  archive.field("line_pitch_um", rotary.line_pitch_um);
+  archive.field("ticks_per_revolution", rotary.ticks_per_revolution);
+  archive.field("rpm", rotary.rpm);
+  archive.field("circumference_um", rotary.circumference_um);
+  archive.field("surface_speed_mm_s", rotary.surface_speed_mm_s);
+  archive.field("encoder_lines", rotary.encoder_lines);
+  archive.field("interpolation_bits", rotary.interpolation_bits);
+  archive.field("gear_encoder_turns", rotary.gear_encoder_turns);
+  archive.field("gear_workpiece_turns", rotary.gear_workpiece_turns);
+  archive.field("edges_per_revolution", rotary.edges_per_revolution);
+}
+
+template <class Archive, class P>
+void describe_ab(Archive& archive, P& ab) {
+  archive.field("prescaler", ab.prescaler);
+  archive.field("increment", ab.increment);
+  archive.section("fraction", [&] {
+    archive.field("num", ab.fraction_num);
+    archive.field("den", ab.fraction_den);
+  });
+  archive.field("output_hz", ab.output_hz);
+  archive.field("wanted_hz", ab.wanted_hz);
+  archive.field("exact", ab.exact);
+  archive.exact_field("drift_lines_per_revolution", ab.drift_lines_per_revolution);
+  archive.field("drift_um_per_revolution", ab.drift_um_per_revolution);
+  archive.field("lines_until_limit", ab.lines_until_limit);
+  archive.field("revolutions_until_limit", ab.revolutions_until_limit);
+  archive.field("bound_lines_until_limit", ab.bound_lines_until_limit);
+  archive.field("counter_bits", ab.counter_bits);
+  archive.field("wanted_increment", ab.wanted_increment);
+  archive.field("max_output_hz", ab.max_output_hz);
+  archive.field("seam_limit_um", ab.seam_limit_um);
+}
+
+template <class Archive, class P>
+void describe_job(Archive& archive, P& job) {
+  archive.field("revolutions", job.revolutions);
+  archive.field("ticks", job.ticks);
+  archive.field("duration_s", job.duration_s);
+}
+
+template <class Archive, class P>
+void describe_plan(Archive& archive, P& plan) {
+  archive.field("title", plan.title);
+  archive.field("mode", plan.mode);
+  archive.section("clock", [&] { describe_clock(archive, plan.clock); });
+  archive.section("line", [&] { describe_line(archive, plan.line); });
+  archive.section("rotary", [&] { describe_rotary(archive, plan.rotary); });
+  archive.section("ab", [&] { describe_ab(archive, plan.ab); });
+  archive.section("job", [&] { describe_job(archive, plan.job); });
+  archive.field("warnings", plan.warnings);
+}
+
+}  // namespace gravure::plan_json

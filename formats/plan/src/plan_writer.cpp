@@ -1,0 +1,35 @@
+#include "plan_writer.hpp"
+
+#include "plan_names.hpp"
+
+namespace gravure::plan_json {
+
+void PlanWriter::field(const char* key, Mode mode) {
+  for (const ModeName& entry : kModeNames) {
+    if (entry.mode == mode) {
+      here()[key] = entry.name;
+    }
+  }
+}
+
+void PlanWriter::field(const char* key, const std::optional<Integer>& value) {
+  here()[key] = value ? whole(*value) : Json(nullptr);
+}
+
+void PlanWriter::field(const char* key, const Rational& value) {
+  here()[key] = plain_is_whole(value) ? whole(numerator_of(value)) : Json(to_double(value));
+  stack_.back().ratios[key] = parts(value);
+}
+
+PlanWriter::Json PlanWriter::whole(const Integer& value) {
+  return abs(value) <= kLargestJsonInteger ? Json(static_cast<std::int64_t>(value)) : Json(to_string(value));
+}
+
+PlanWriter::Json PlanWriter::parts(const Rational& value) {
+  Json object = Json::object();
+  object["num"] = whole(numerator_of(value));
+  object["den"] = whole(denominator_of(value));
+  return object;
+}
+
+}  // namespace gravure::plan_json
