@@ -1,5 +1,6 @@
 #include "gravure/raster/kernels.hpp"
 
+#include "avx2.hpp"
 #include "gravure/raster/count.hpp"
 #include "gravure/raster/runs.hpp"
 #include "gravure/raster/transpose.hpp"
@@ -24,6 +25,24 @@ constexpr Kernels kPortable = {
     .append_runs = portable::append_runs,
 };
 
+#ifdef GRAVURE_HAS_X86_KERNELS
+constexpr Kernels kAvx2 = {
+    .isa = Isa::avx2,
+    .place_line = avx2::place_line,
+    .place_rows = avx2::place_rows,
+    .popcount = avx2::popcount,
+    .first_difference = avx2::first_difference,
+    .count_differences = avx2::count_differences,
+    .threshold_u8 = avx2::threshold_u8,
+    .threshold_u16 = avx2::threshold_u16,
+    .threshold_f32 = avx2::threshold_f32,
+    .slice_u8 = avx2::slice_u8,
+    .slice_u16 = avx2::slice_u16,
+    .transpose = portable::transpose,
+    .append_runs = avx2::append_runs,
+};
+#endif
+
 }  // namespace
 
 std::string_view isa_name(Isa isa) noexcept {
@@ -39,6 +58,11 @@ std::string_view isa_name(Isa isa) noexcept {
 }
 
 const Kernels* kernels_for(Isa isa) noexcept {
+#ifdef GRAVURE_HAS_X86_KERNELS
+  if (isa == Isa::avx2) {
+    return avx2::cpu_has_avx2() ? &kAvx2 : nullptr;
+  }
+#endif
   return isa == Isa::portable ? &kPortable : nullptr;
 }
 
