@@ -46,7 +46,7 @@ inline void expect_same_edges(const AbRegisters& registers, std::uint64_t clocks
 /// Every extreme the registers have, each over `clocks` clocks.
 inline void expect_same_edges_at_extremes(std::uint64_t clocks) {
   for (const int bits : {8, 16, 32, 48, 64}) {
-    for (const std::uint64_t prescaler : {1, 2, 3, 7, 70'001}) {
+    for (const std::uint64_t prescaler : {1U, 2U, 3U, 7U, 70'001U}) {
       for (const bool fraction : {false, true}) {
         AbRegisters registers{.bits = bits, .prescaler = prescaler};
         if (fraction) {

@@ -117,17 +117,16 @@ class AbEdges {
     const std::uint64_t short_gap = short_gap_;
     const std::uint64_t extra = long_gap_ - short_gap_;
     std::uint64_t turns = 0;
-    const auto quarter = [&](std::uint64_t number) {
-      sink(AbEdge{clock, pins_of_quarter(number)});
+    const auto next_after = [&](std::uint64_t now, std::uint64_t number) {
+      sink(AbEdge{now, pins_of_quarter(number)});
       const bool longer = slack < rest;
       slack += longer ? back : Word{0} - rest;
-      clock += short_gap + (longer ? extra : 0);
+      return now + short_gap + (longer ? extra : 0);
     };
     for (; clock <= last_start; ++turns) {
-      quarter(1);
-      quarter(2);
-      quarter(3);
-      quarter(4);
+      for (const std::uint64_t number : {1U, 2U, 3U, 4U}) {
+        clock = next_after(clock, number);
+      }
     }
     walk.slack = slack;
     next_clock_ = clock;

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Proves the claims that stand in fpga/rtl/*.v under FORMAL.
+
+usage: prove.py [--rtl FOLDER] [--work FOLDER] [--timeout SECONDS] [NAME...]
+
+proofs.txt lists the proofs. Needs yosys (with yosys-smtbmc), z3, cvc5 and berkeley-abc. Exit status: 0 all proven,
+1 something is not, 77 a tool is missing (said on stdout)."""
+
+import argparse
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def read_proofs():
+    proofs = []
+    for line in (HERE / "proofs.txt").read_text().splitlines():
+        words = line.split("#")[0].split()
+        if words:
+            parameters = [word.split("=") for word in words[3:]]
+            proofs.append((words[0], words[1], words[2], parameters))
+    return proofs
+
+
+def run(command, folder, timeout):
+    try:
+        done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              timeout=timeout)
+        return done.returncode, done.stdout
+    except subprocess.TimeoutExpired:
+        return None, "no answer in time"
+
+
+def read_design(rtl, module, parameters):
+    chparam = " ".join(f"-set {name} {value}" for name, value in parameters)
+    script = f"read_verilog -formal -I{rtl} {' '.join(str(file) for file in sorted(rtl.glob('*.v')))}; "
+    if chparam:
+        script += f"chparam {chparam} {module}; "
+    return script + f"prep -top {module} -flatten; async2sync; dffunmap; "
+
+
+def prove_pdr(design, folder, timeout):
+    script = design + ("delete -output; delete t:$cover; memory_map; opt -full -nodffe -nosdff; techmap; "
+                       "opt -fast -nodffe -nosdff; dffunmap; abc -g AND -fast; opt_clean; write_aiger -I -B -zinit d.aig")
+    status, text = run(["yosys", "-q", "-p", script], folder, timeout)
+    if status != 0:
+        return False, text
+    _, text = run(["berkeley-abc", "-c", f"read_aiger d.aig; fold; strash; pdr -T {timeout}"], folder, timeout + 10)
+    return "Property proved" in text, text  # its exit status is always 0
+
+
+def prove_induct(design, solver, depth, folder, timeout):
+    status, text = run(["yosys", "-q", "-p", design + "delete t:$cover; write_smt2 -wires d.smt2"], folder, timeout)
+    if status != 0:
+        return False, text
+    for extra in (["-i"], []):  # the step, then the base case
+        command = ["yosys-smtbmc", "-s", solver, "-t", depth, *extra, "d.smt2"]
+        status, text = run(command, folder, timeout)
+        if status != 0:
+            return False, text
+    return True, text
+
+
+def prove(proof, rtl, folder, timeout):
+    _, module, engine, parameters = proof
+    design = read_design(rtl, module, parameters)
+    if engine == "pdr":
+        return prove_pdr(design, folder, timeout)
+    solver, depth = engine.split("-")
+    return prove_induct(design, solver, depth, folder, timeout)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--rtl", type=pathlib.Path, default=HERE.parent / "rtl")
+    parser.add_argument("--timeout", type=int, default=120)
+    parser.add_argument("names", nargs="*")
+    arguments = parser.parse_args()
+    missing = [tool for tool in ("yosys", "yosys-smtbmc", "z3", "cvc5", "berkeley-abc") if shutil.which(tool) is None]
+    if missing:
+        print("SKIPPED: not found: " + ", ".join(missing))
+        return 77
+    failed = 0
+    for proof in read_proofs():
+        if arguments.names and proof[0] not in arguments.names:
+            continue
+        start = time.monotonic()
+        with tempfile.TemporaryDirectory() as folder:
+            proven, text = prove(proof, arguments.rtl.resolve(), folder, arguments.timeout)
+        print(f"{proof[0]:20} {proof[2]:10} {'proven' if proven else 'NOT PROVEN':10} {time.monotonic() - start:.1f} s",
+              flush=True)
+        if not proven:
+            failed += 1
+            print("\n".join(text.splitlines()[-25:]))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
