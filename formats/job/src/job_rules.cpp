@@ -47,6 +47,19 @@ void check_image_kind(const Section& image, Violations& violations) {
   }
 }
 
+/// Which end is deep may be either; that they differ is all a job must say. The default of depth_max depends on the
+/// map.
+void check_depth_ends(const Section& image, const Job& job, Violations& violations) {
+  const Entry* low = image.find("depth_min");
+  const Entry* high = image.find("depth_max");
+  if (high != nullptr && low == nullptr && job.image.depth_max == Rational(0)) {
+    violations.add(high->at, full_name(image, *high) + ": must differ from depth_min, which is 0 where not given");
+  }
+  if (job.image.depth_min && job.image.depth_min == job.image.depth_max) {
+    contradict(image, *low, *high, "depth_min and depth_max must differ", violations);
+  }
+}
+
 void check_depth_keys(const Section& image, const Job& job, Violations& violations) {
   const Entry* depth_map = image.find("depth_map");
   const Entry* threshold = image.find("threshold");
@@ -59,14 +72,7 @@ void check_depth_keys(const Section& image, const Job& job, Violations& violatio
       violations.add(entry->at, full_name(image, *entry) + ": has a meaning only with depth_map");
     }
   }
-  const Entry* low = image.find("depth_min");
-  const Entry* high = image.find("depth_max");
-  if (job.image.depth_max && low == nullptr && *job.image.depth_max <= 0) {
-    violations.add(high->at, full_name(image, *high) + ": must be greater than depth_min, which is 0 where not given");
-  }
-  if (job.image.depth_min && job.image.depth_max && *job.image.depth_min >= *job.image.depth_max) {
-    contradict(image, *low, *high, "depth_min must be less than depth_max", violations);
-  }
+  check_depth_ends(image, job, violations);
 }
 
 void check_layer_count(const Section& image, const Job& job, Violations& violations) {

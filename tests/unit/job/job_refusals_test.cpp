@@ -159,12 +159,12 @@ const Refusal kContradictions[] = {
      "depth_map = \"d.png\"\nlevels = 100\nthreshold = 128", kBad, "threshold",
      "[image] threshold = 128: contradicts depth_map = \"d.png\" (line 33); a depth map is sliced into levels, never "
      "thresholded"},
-    {"DepthsTheWrongWayRound", "files        = [\"layers/*.tif\"]",
+    {"DepthsThatAreEqual", "files        = [\"layers/*.tif\"]",
      "depth_map = \"d.exr\"\nlevels = 100\ndepth_min = 0.5\ndepth_max = 0.50", kBad, "depth_max",
-     "[image] depth_max = 0.50: contradicts depth_min = 0.5 (line 35); depth_min must be less than depth_max"},
-    {"DepthMaxBelowTheDefaultMin", "files        = [\"layers/*.tif\"]",
+     "[image] depth_max = 0.50: contradicts depth_min = 0.5 (line 35); depth_min and depth_max must differ"},
+    {"DepthMaxEqualToTheDefaultMin", "files        = [\"layers/*.tif\"]",
      "depth_map = \"d.exr\"\nlevels = 100\ndepth_max = 0.0", kBad, "depth_max",
-     "[image] depth_max = 0.0: must be greater than depth_min, which is 0 where not given"},
+     "[image] depth_max = 0.0: must differ from depth_min, which is 0 where not given"},
     {"LevelsThatAreNotRevolutions", "files        = [\"layers/*.tif\"]", "depth_map = \"d.png\"\nlevels = 99", kBad,
      "revolutions ",
      "[image] revolutions = 100: contradicts levels = 99 (line 34); order = \"sequence\" needs one layer per "
@@ -206,14 +206,41 @@ TEST(JobSyntax, RefusesBadUtf8AndNestingWithoutEnd) {
     dotted += ".a";
   }
   for (const std::string& text :
-       {std::string("[job]\ntitle = \"\xFF\"\n"), dotted + " = 1\n", "[" + dotted + "]\n", "x = {" + dotted + " = 1}\n",
-        "# \"\n'''' = '\"' \n" + dotted, "x = " + std::string(100'000, '['), "s = '''\n'\\''' \n" + dotted + "=1"}) {
+       {std::string("[\n"), std::string("[[\n"), std::string("[ =\n"), std::string("[job]\ntitle = \"\xFF\"\n"),
+        dotted + " = 1\n", "[" + dotted + "]\n", "x = {" + dotted + " = 1}\n", "# \"\n'''' = '\"' \n" + dotted,
+        "x = " + std::string(100'000, '['), "s = '''\n'\\''' \n" + dotted + "=1"}) {
     const Result<Job> result = parse_job(text, "job.toml");
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, kBad);
     EXPECT_NE(result.error().message.find("not TOML"), std::string::npos) << result.error().message;
     EXPECT_LT(result.error().message.size(), 600U);
   }
+}
+
+TEST(JobSyntax, RefusesLettersOutsideAsciiOutsideStrings) {
+  for (unsigned letter = 0x80; letter < 0x10000; letter += letter < 0x600 ? 1 : 61) {
+    if (letter >= 0xD800 && letter < 0xE000) {
+      continue;  // no characters
+    }
+    std::string utf8;
+    if (letter < 0x800) {
+      utf8 = {static_cast<char>(0xC0U | (letter >> 6U)), static_cast<char>(0x80U | (letter & 0x3FU))};
+    } else {
+      utf8 = {static_cast<char>(0xE0U | (letter >> 12U)), static_cast<char>(0x80U | ((letter >> 6U) & 0x3FU)),
+              static_cast<char>(0x80U | (letter & 0x3FU))};
+    }
+    for (const std::string& text : {utf8 + " = 1\n", "a = \"x\"" + utf8 + "\n", "a = \"\"\"\\" + utf8 + "\"\"\"\n"}) {
+      EXPECT_FALSE(parse_job(text, "job.toml")) << text;
+    }
+  }
+}
+
+TEST(JobRules, LetADepthMapBeDeepAtEitherEnd) {
+  const Result<Job> result =
+      parse_job(sample_with("files        = [\"layers/*.tif\"]",
+                            "depth_map = \"d.exr\"\nlevels = 100\ndepth_min = 0.5\ndepth_max = -0.5"),
+                "job.toml");
+  EXPECT_TRUE(result) << result.error().message;
 }
 
 TEST(JobSyntax, LetsStringsAndCommentsHoldAnyNumberOfDots) {

@@ -1,0 +1,54 @@
+// Any bytes are a job or an Error; what either promises holds.
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "gravure/formats/job_file.hpp"
+
+namespace {
+
+constexpr std::string_view kPath = "fuzz.toml";
+
+void require(bool holds) {
+  if (!holds) {
+    std::abort();
+  }
+}
+
+void check_error(const gravure::Error& error) {
+  require(error.code == gravure::ErrorCode::bad_argument || error.code == gravure::ErrorCode::out_of_range ||
+          error.code == gravure::ErrorCode::bad_file);
+  require(error.message.substr(0, kPath.size()) == kPath);
+  std::size_t line_start = 0;
+  for (std::size_t at = 0; at < error.message.size(); ++at) {
+    if (error.message[at] == '\n') {
+      line_start = at + 1;
+      require(error.message.compare(line_start, kPath.size(), kPath) == 0);
+    }
+    require(error.message[at] == '\n' || static_cast<unsigned char>(error.message[at]) >= 0x20U);
+  }
+}
+
+void check_job(const gravure::Job& job, std::string_view text) {
+  require(job.text == text && job.path == kPath);
+  require(job.laser.seed_hz > 0 && job.laser.pulse_divider > 0 && job.fpga.counter_bits >= 8);
+  require(job.rotary.diameter_mm.has_value() != job.rotary.circumference_mm.has_value());
+  require(job.rotary.line_pitch_um.has_value() != job.rotary.lines_per_revolution.has_value());
+  require(!job.image.files.empty() || job.image.depth_map || job.image.pixels_per_line);
+  require(job.limits.seam_um > 0);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const gravure::Result<gravure::Job> result = gravure::parse_job(text, std::string(kPath));
+  if (result) {
+    check_job(result.value(), text);
+  } else {
+    check_error(result.error());
+  }
+  return 0;
+}
