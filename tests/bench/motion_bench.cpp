@@ -1,9 +1,12 @@
 #include <benchmark/benchmark.h>
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include "gravure/motion/plan_profile.hpp"
+#include "gravure/motion/search.hpp"
 
 namespace gravure::motion {
 namespace {
@@ -40,6 +43,111 @@ void plan_s_factor(benchmark::State& state) {
   }
 }
 
+std::vector<Mode> table_modes() {
+  const FrequencyAndDamping modes[] = {{36.206, 0.2249}, {86.748, 0.0331}};
+  return chain_modes(modes).value();
+}
+
+const SFactorRequest kIndexing{{20, 375, 14000, 13500, 0, 0}, 82.5, 250};
+
+/// Residual acceleration when the move ends, by its jumps.
+double closed_form(const std::vector<Mode>& modes, const std::vector<InputJump>& input) {
+  return residual_of(modes, input, BandOf::acceleration).at(0);
+}
+
+/// The same by Runge-Kutta of fourth order in modal coordinates, steps ending on the segment borders.
+double runge_kutta(const std::vector<Mode>& modes, const Profile& profile, double step_s) {
+  double acceleration = 0;
+  for (const Mode& mode : modes) {
+    const double w = 6.283185307179586 * mode.f_hz;
+    const double c = 2 * mode.zeta * w;
+    double z = 0;
+    double r = 0;
+    for (std::size_t k = 0; k < 7; ++k) {
+      const double length = profile.durations_s[k];
+      const double steps = std::ceil(length / step_s);
+      const double h = steps > 0 ? length / steps : 0;
+      for (double i = 0; i < steps; ++i) {
+        const double a0 = profile.acceleration_mm_s2[k] + profile.jerk_mm_s3[k] * i * h;
+        const double am = a0 + profile.jerk_mm_s3[k] * h / 2;
+        const double a1 = a0 + profile.jerk_mm_s3[k] * h;
+        const auto slope = [&](double zz, double rr, double a) { return -a - c * rr - w * w * zz; };
+        const double r1 = slope(z, r, a0);
+        const double r2 = slope(z + h / 2 * r, r + h / 2 * r1, am);
+        const double r3 = slope(z + h / 2 * (r + h / 2 * r1), r + h / 2 * r2, am);
+        const double r4 = slope(z + h * (r + h / 2 * r2), r + h * r3, a1);
+        const double z_next = z + h * r + h * h / 6 * (r1 + r2 + r3);
+        r += h / 6 * (r1 + 2 * r2 + 2 * r3 + r4);
+        z = z_next;
+      }
+    }
+    acceleration += mode.participation * (-c * r - w * w * z);
+  }
+  return acceleration;
+}
+
+void respond_closed_form(benchmark::State& state) {
+  const auto modes = table_modes();
+  const auto input = input_of(plan_profile(kIndexing).value());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(closed_form(modes, input));
+  }
+}
+
+/// `error` says how far it is off, relative to the closed form, which is itself exact to about 1e-12.
+void respond_runge_kutta(benchmark::State& state) {
+  const auto modes = table_modes();
+  const Profile profile = plan_profile(kIndexing).value();
+  const double step_s = static_cast<double>(state.range(0)) * 1e-7;
+  double result = 0;
+  for (auto _ : state) {
+    result = runge_kutta(modes, profile, step_s);
+    benchmark::DoNotOptimize(result);
+  }
+  state.counters["error"] = std::abs(result / closed_form(modes, input_of(profile)) - 1);
+}
+
+void settle_one(benchmark::State& state) {
+  const auto modes = table_modes();
+  const auto input = input_of(plan_profile(kIndexing).value());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(settle(modes, input, {BandOf::acceleration, 840}));
+  }
+}
+
+SearchProblem table_problem() {
+  return {20, 500, 30000, 30000, 1e21, 250, table_modes(), {BandOf::acceleration, 840}, 5};
+}
+
+void search_grid_points(benchmark::State& state, bool asymmetric) {
+  const SearchProblem problem = table_problem();
+  std::uint64_t points = 0;
+  for (auto _ : state) {
+    points += search_grid(problem, {}, asymmetric).value().evaluated;
+  }
+  state.counters["s_per_profile"] =
+      benchmark::Counter(static_cast<double>(points), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void search_global(benchmark::State& state, bool robust) {
+  const SearchProblem problem = table_problem();
+  SearchOptions options;
+  options.robust = robust;
+  std::uint64_t evaluated = 0;
+  for (auto _ : state) {
+    evaluated += search(problem, options).value().evaluated;
+  }
+  state.counters["s_per_profile"] =
+      benchmark::Counter(static_cast<double>(evaluated), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+BENCHMARK(respond_closed_form);
+BENCHMARK(respond_runge_kutta)->Arg(1000)->Arg(100)->Arg(10)->Arg(1);
+BENCHMARK(settle_one);
+BENCHMARK_CAPTURE(search_grid_points, symmetric, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(search_grid_points, asymmetric, true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(search_global, exact, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(search_global, with_robust, true)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(plan_jerk_limited, rest_to_rest, 0.0);
 BENCHMARK_CAPTURE(plan_jerk_limited, moving_start, 0.3);
 BENCHMARK(plan_s_factor);

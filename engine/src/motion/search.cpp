@@ -1,0 +1,198 @@
+#include "gravure/motion/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "gravure/motion/plan_profile.hpp"
+#include "gravure/motion/shaper.hpp"
+#include "mode_constants.hpp"
+#include "search_global.hpp"
+
+namespace gravure::motion {
+namespace {
+
+SFactorRequest request_of(const SearchProblem& problem, const Candidate& c) {
+  return {{problem.stroke_mm, c.v_mm_s, c.a_up_mm_s2, c.a_down_mm_s2, 0, 0}, c.s_factor, problem.update_us};
+}
+
+/// The terms of one mode's residual for every error of it.
+std::vector<ResidualSignal::Term> error_terms(const SearchProblem& problem, const Mode& mode,
+                                              std::span<const InputJump> input) {
+  static constexpr std::array<double, 5> kFine{-1, -0.5, 0, 0.5, 1};
+  static constexpr std::array<double, 3> kCoarse{-1, 0, 1};
+  static constexpr std::array<double, 1> kNone{0};
+  const bool few = problem.modes.size() <= 3;
+  const auto frequencies = few ? std::span<const double>(kFine) : std::span<const double>(kCoarse);
+  const auto dampings = few ? std::span<const double>(kCoarse) : std::span<const double>(kNone);
+  const double error = problem.mode_error_percent / 100;
+  std::vector<ResidualSignal::Term> terms;
+  for (const double f : frequencies) {
+    for (const double d : dampings) {
+      const std::array<Mode, 1> off{
+          Mode{mode.f_hz * (1 + f * error), std::min(0.999, mode.zeta * (1 + d * error)), mode.participation}};
+      terms.push_back(residual_of(off, input, problem.band.of).terms()[0]);
+    }
+  }
+  return terms;
+}
+
+Alternative measure(const SearchProblem& problem, std::string name, const std::vector<InputJump>& input) {
+  Alternative row;
+  row.name = std::move(name);
+  const ResidualSignal signal = residual_of(problem.modes, input, problem.band.of);
+  row.access_time_s = input.back().time_s;
+  row.positioning_time_s = row.access_time_s + signal.last_exit_s(problem.band.tolerance);
+  row.envelope_time_s = row.access_time_s + signal.envelope_time_s(problem.band.tolerance);
+  row.residual = signal.envelope(0);
+  row.worst_positioning_time_s = worst_positioning_time_s(problem, input);
+  return row;
+}
+
+/// The profile of a candidate, planned again from its parameters, so that what is reported is what will run.
+Result<Alternative> measure_candidate(const SearchProblem& problem, std::string name, Candidate candidate) {
+  GRAVURE_TRY(const Profile profile, plan_profile(request_of(problem, candidate)));
+  Alternative row = measure(problem, std::move(name), input_of(profile));
+  candidate.access_time_s = row.access_time_s;
+  candidate.positioning_time_s = row.positioning_time_s;
+  row.profile = candidate;
+  return row;
+}
+
+/// All limits at once, with the shortest jerk time that keeps the jerk limit.
+Candidate fastest_of(const SearchProblem& problem) {
+  const double steepest = std::max(problem.a_up_max_mm_s2, problem.a_down_max_mm_s2);
+  const double jerk_s = problem.jerk_max_mm_s3 < 1e21 ? steepest / problem.jerk_max_mm_s3 : 0;
+  return {
+      problem.v_max_mm_s, problem.a_up_max_mm_s2, problem.a_down_max_mm_s2, jerk_s / (problem.update_us * 1e-6), 0, 0};
+}
+
+Result<void> add_shaped(const SearchProblem& problem, ShaperKind kind, SearchReport& report) {
+  if (problem.modes.size() > 4) {
+    return {};  // make_shaper() says why
+  }
+  GRAVURE_TRY(const Profile fastest, plan_profile(request_of(problem, fastest_of(problem))));
+  GRAVURE_TRY(const auto shaper, make_shaper(kind, problem.modes));
+  const char* name = kind == ShaperKind::zv ? "zv" : "zvd";
+  report.alternatives.push_back(measure(problem, name, shape_input(input_of(fastest), shaper)));
+  report.alternatives.back().profile = fastest_of(problem);
+  return {};
+}
+
+std::string gain(const SearchReport& report, const Alternative& best, double Alternative::*time) {
+  std::string text;
+  for (const Alternative& other : report.alternatives) {
+    if (other.name != best.name) {
+      text += fmt::format("{} {}: {:.3f} ms ({:+.1f} %)", text.empty() ? "" : ",", other.name, other.*time * 1e3,
+                          100 * (other.*time / (best.*time) - 1));
+    }
+  }
+  return text;
+}
+
+void judge(const SearchProblem& problem, SearchReport& report) {
+  const auto shortest = [&report](double Alternative::*time) {
+    return *std::min_element(report.alternatives.begin(), report.alternatives.end(),
+                             [time](const Alternative& a, const Alternative& b) { return a.*time < b.*time; });
+  };
+  const Alternative exact = shortest(&Alternative::positioning_time_s);
+  const Alternative worst = shortest(&Alternative::worst_positioning_time_s);
+  report.shortest = exact.name;
+  report.shortest_worst = worst.name;
+  report.verdict = fmt::format(
+      "For exact modes {} is shortest with {:.3f} ms; others:{}. With modes off by up to {} % {} is shortest with "
+      "{:.3f} ms; "
+      "others:{}.",
+      exact.name, exact.positioning_time_s * 1e3, gain(report, exact, &Alternative::positioning_time_s),
+      problem.mode_error_percent, worst.name, worst.worst_positioning_time_s * 1e3,
+      gain(report, worst, &Alternative::worst_positioning_time_s));
+  if (exact.name == "zv" || exact.name == "zvd" || worst.name == "zv" || worst.name == "zvd") {
+    report.verdict +=
+        " An input shaper wins: run it as a second stage after the fastest profile, with the same shaper on all axes "
+        "of a "
+        "contour.";
+  }
+}
+
+/// Profiles by name, each seeding the next, so none is worse than those before it.
+struct Found {
+  Candidate symmetric;
+  Candidate asymmetric;
+  std::optional<Candidate> robust;
+};
+
+Result<Found> find_profiles(const SearchProblem& problem, const SearchOptions& options, SearchReport& report) {
+  const MoveSpace space(problem);
+  std::vector<MovePoint> symmetric_seeds;
+  std::vector<MovePoint> seeds;
+  if (options.grid) {
+    GRAVURE_TRY(const GridSearch symmetric, search_grid(problem, *options.grid, false));
+    GRAVURE_TRY(const GridSearch asymmetric, search_grid(problem, *options.grid, true));
+    symmetric_seeds.push_back(MoveSpace::point_of(space.durations_of(symmetric.best)));
+    seeds.push_back(MoveSpace::point_of(space.durations_of(asymmetric.best)));
+    report.evaluated += symmetric.evaluated + asymmetric.evaluated;
+  }
+  Found found;
+  const MovePoint symmetric = search_global(space, problem, options, SearchFor::symmetric, symmetric_seeds);
+  found.symmetric = space.candidate_at(symmetric);
+  seeds.push_back(symmetric);
+  const MovePoint asymmetric = search_global(space, problem, options, SearchFor::asymmetric, seeds);
+  found.asymmetric = space.candidate_at(asymmetric);
+  if (options.robust) {
+    seeds.push_back(asymmetric);
+    found.robust = space.candidate_at(search_global(space, problem, options, SearchFor::robust, seeds));
+  }
+  report.evaluated += space.evaluated();
+  return found;
+}
+
+}  // namespace
+
+double worst_positioning_time_s(const SearchProblem& problem, std::span<const InputJump> input) {
+  if (input.empty()) {
+    return 0;
+  }
+  std::vector<std::vector<ResidualSignal::Term>> terms;
+  std::size_t combinations = 1;
+  for (const Mode& mode : problem.modes) {
+    terms.push_back(error_terms(problem, mode, input));
+    combinations *= terms.back().size();
+  }
+  double worst = 0;
+  for (std::size_t combination = 0; combination < combinations; ++combination) {
+    ResidualSignal signal;
+    std::size_t rest = combination;
+    for (const auto& of_mode : terms) {
+      signal.add(of_mode[rest % of_mode.size()]);
+      rest /= of_mode.size();
+    }
+    worst = std::max(worst, signal.last_exit_s(problem.band.tolerance));
+  }
+  return input.back().time_s + worst;
+}
+
+Result<SearchReport> search(const SearchProblem& problem, const SearchOptions& options) {
+  GRAVURE_CHECK(check_problem(problem));
+  SearchReport report;
+  GRAVURE_TRY(const Found found, find_profiles(problem, options, report));
+  const auto add = [&](const char* name, const Candidate& candidate) -> Result<void> {
+    GRAVURE_TRY(Alternative row, measure_candidate(problem, name, candidate));
+    report.alternatives.push_back(std::move(row));
+    return {};
+  };
+  GRAVURE_CHECK(add("fastest", fastest_of(problem)));
+  GRAVURE_CHECK(add("best_symmetric", found.symmetric));
+  GRAVURE_CHECK(add("best_asymmetric", found.asymmetric));
+  report.best = *report.alternatives.back().profile;
+  if (found.robust) {
+    GRAVURE_CHECK(add("robust", *found.robust));
+  }
+  GRAVURE_CHECK(add_shaped(problem, ShaperKind::zv, report));
+  GRAVURE_CHECK(add_shaped(problem, ShaperKind::zvd, report));
+  judge(problem, report);
+  return report;
+}
+
+}  // namespace gravure::motion
