@@ -33,6 +33,7 @@ void slice_u8(std::span<const std::span<std::byte>> layers, std::int64_t first_l
               std::int64_t width, std::int64_t rows, const SliceRange& range);
 void slice_u16(std::span<const std::span<std::byte>> layers, std::int64_t first_level,
                std::span<const std::uint16_t> src, std::int64_t width, std::int64_t rows, const SliceRange& range);
+void transpose(std::span<std::byte> dst, std::span<const std::byte> src, std::int64_t rows, std::int64_t cols);
 void append_runs(std::span<const std::byte> line, std::int64_t width, std::vector<std::uint32_t>& edges);
 
 }  // namespace gravure::raster::avx2

@@ -38,7 +38,7 @@ constexpr Kernels kAvx2 = {
     .threshold_f32 = avx2::threshold_f32,
     .slice_u8 = avx2::slice_u8,
     .slice_u16 = avx2::slice_u16,
-    .transpose = portable::transpose,
+    .transpose = avx2::transpose,
     .append_runs = avx2::append_runs,
 };
 #endif
