@@ -1,6 +1,14 @@
 #pragma once
 
 #include "gravure/fpga/ab_generator.hpp"
+#include "gravure/fpga/crc32c.hpp"
+#include "gravure/fpga/fault_latch.hpp"
+#include "gravure/fpga/line_fifo.hpp"
+#include "gravure/fpga/line_sequencer.hpp"
+#include "gravure/fpga/scanner_clock.hpp"
+#include "gravure/fpga/slot_divider.hpp"
+#include "gravure/fpga/slot_gate.hpp"
+#include "gravure/fpga/watchdog.hpp"
 
 namespace gravure::cosim {
 
@@ -30,6 +38,163 @@ struct AbGeneratorPorts {
     visit("b", out.b);
     visit("refused", out.refused);
     visit("count", out.count, kBits);
+  }
+};
+
+struct SlotDividerPorts {
+  using Model = fpga::SlotDivider;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("run", in.run);
+    visit("ticks_per_slot", in.ticks_per_slot, 16);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("slot", out.slot);
+  }
+};
+
+struct LineSequencerPorts {
+  using Model = fpga::LineSequencer;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("slot", in.slot);
+    visit("start", in.start);
+    visit("slots_per_line", in.slots_per_line, 16);
+    visit("first_slot", in.first_slot, 16);
+    visit("window_slots", in.window_slots, 16);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("slot_out", out.slot_out);
+    visit("decision", out.decision);
+    visit("window", out.window);
+    visit("first", out.first);
+    visit("last", out.last);
+    visit("running", out.running);
+  }
+};
+
+struct SlotGatePorts {
+  using Model = fpga::SlotGate;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("run", in.run);
+    visit("clear", in.clear);
+    visit("fault", in.fault);
+    visit("slot", in.slot);
+    visit("decision", in.decision);
+    visit("window", in.window);
+    visit("first", in.first);
+    visit("last", in.last);
+    visit("byte_valid", in.byte_valid);
+    visit("byte_data", in.byte_data, 8);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("gate", out.gate);
+    visit("byte_take", out.byte_take);
+    visit("underrun", out.underrun);
+    visit("dark", out.dark);
+  }
+};
+
+struct LineFifoPorts {
+  using Model = fpga::LineFifo;
+  static Model make() { return Model(4); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("flush", in.flush);
+    visit("push", in.push);
+    visit("commit", in.commit);
+    visit("rollback", in.rollback);
+    visit("pop", in.pop);
+    visit("push_data", in.push_data, 8);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("valid", out.valid);
+    visit("data", out.data, 8);
+    visit("level", out.level, 6);
+    visit("full", out.full);
+    visit("overflow", out.overflow);
+  }
+};
+
+struct Crc32cPorts {
+  using Model = fpga::Crc32c;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("start", in.start);
+    visit("valid", in.valid);
+    visit("data", in.data, 8);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("crc", out.crc, 32);
+  }
+};
+
+struct ScannerClockPorts {
+  using Model = fpga::ScannerClock;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("decision", in.decision);
+    visit("first", in.first);
+    visit("slots_per_microvector", in.slots_per_microvector, 16);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("scan", out.scan);
+  }
+};
+
+struct WatchdogPorts {
+  using Model = fpga::Watchdog;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("enable", in.enable);
+    visit("kick", in.kick);
+    visit("clear", in.clear);
+    visit("limit", in.limit, 32);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("expired", out.expired);
+  }
+};
+
+struct FaultLatchPorts {
+  using Model = fpga::FaultLatch;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("acknowledge", in.acknowledge);
+    visit("sequence_error", in.sequence_error);
+    visit("checksum_error", in.checksum_error);
+    visit("shape_error", in.shape_error);
+    visit("underrun", in.underrun);
+    visit("host_silence", in.host_silence);
+    visit("interlock", in.interlock);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("fault", out.fault, 3);
+    visit("any", out.any);
   }
 };
 

@@ -38,7 +38,7 @@ Stimulus stimulus_for(const Machine& machine) {
       const Port& port = ports[at];
       if (const auto rare = rare_strobes().find(port.name); rare != rare_strobes().end()) {
         in[at] = dice.one_in(rare->second) ? 1 : 0;
-      } else if (port.name == "enable") {
+      } else if ((port.name == "enable" || port.name == "run")) {
         in[at] ^= dice.one_in(200) ? 1U : 0U;
       } else if (port.width > 1 && dice.one_in(20)) {
         in[at] = wide_value(dice, port);

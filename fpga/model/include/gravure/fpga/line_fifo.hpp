@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace gravure::fpga {
+
+/// Bit-exact model of fpga/rtl/line_fifo.v (W = 8): bytes on trial until commit, forgotten by rollback; only committed
+/// ones are read. `data` means nothing while `valid` is low.
+class LineFifo {
+ public:
+  struct Inputs {
+    bool rst = false;
+    bool flush = false;
+    bool push = false;
+    bool commit = false;
+    bool rollback = false;
+    bool pop = false;
+    std::uint8_t push_data = 0;
+  };
+  struct Outputs {
+    bool valid = false;
+    std::uint8_t data = 0;
+    std::uint32_t level = 0;  ///< committed and not yet popped
+    bool full = false;
+    bool overflow = false;  ///< sticky until flush
+  };
+
+  explicit LineFifo(int address_bits) : memory_(std::size_t{1} << static_cast<unsigned>(address_bits)) {}
+
+  Outputs step(const Inputs& in) noexcept {
+    const std::size_t mask = memory_.size() - 1;
+    const bool full = written_ - taken_ == memory_.size();
+    const bool refill = (!out_.valid || in.pop) && committed_ != taken_;
+    if (refill) {
+      out_.data = memory_[taken_ & mask];
+    }
+    if (in.rst || in.flush) {
+      written_ = committed_ = taken_ = 0;
+      out_ = {.data = out_.data};
+      return out_;
+    }
+    const std::uint64_t before_push = written_;
+    if (in.rollback) {
+      written_ = committed_;
+    } else if (in.push && !full) {
+      memory_[written_++ & mask] = in.push_data;
+    } else if (in.push) {
+      out_.overflow = true;
+    }
+    if (in.commit && !in.rollback) {
+      committed_ = before_push;
+    }
+    taken_ += refill ? 1 : 0;
+    out_.valid = refill || (out_.valid && !in.pop);
+    out_.level = static_cast<std::uint32_t>(committed_ - taken_) + (out_.valid ? 1U : 0U);
+    out_.full = written_ - taken_ == memory_.size();
+    return out_;
+  }
+
+ private:
+  std::vector<std::uint8_t> memory_;
+  std::uint64_t written_ = 0;
+  std::uint64_t committed_ = 0;
+  std::uint64_t taken_ = 0;
+  Outputs out_;
+};
+
+}  // namespace gravure::fpga

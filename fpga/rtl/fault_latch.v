@@ -1,0 +1,46 @@
+// Fault latch: keeps the first fault until it is acknowledged; the numbers are those of DeviceFault on the host.
+//
+// Causes on the same clock: the lowest number is kept. An acknowledge clears the fault, unless a cause is present on the
+// same clock. Latency: one clock. Reset: none.
+`default_nettype none
+module fault_latch (
+    input wire clk,
+    input wire rst,
+    input wire acknowledge,
+    input wire sequence_error,
+    input wire checksum_error,
+    input wire shape_error,
+    input wire underrun,
+    input wire host_silence,
+    input wire interlock,
+    output reg [2:0] fault,
+    output wire any
+);
+  assign any = fault != 0;
+  wire [2:0] cause = sequence_error ? 3'd1 : checksum_error ? 3'd2 : shape_error ? 3'd3 :
+                     underrun ? 3'd4 : host_silence ? 3'd5 : interlock ? 3'd6 : 3'd0;
+  always @(posedge clk) begin
+    if (rst) fault <= 3'd0;
+    else if (acknowledge || !any) fault <= cause;
+  end
+
+`ifdef FORMAL
+  reg valid = 1'b0;
+  reg [2:0] past_fault;
+  reg released;
+  reg had_cause;
+  initial assume (rst);
+  always @(posedge clk) begin
+    valid <= 1'b1;
+    past_fault <= fault;
+    released <= rst || acknowledge;
+    had_cause <= cause != 0 && !rst;
+  end
+  always @(*) if (valid) begin
+    if (past_fault != 0 && !released) assert (fault == past_fault);  // sticky, and the first one
+    if (had_cause) assert (any);
+    assert (fault != 3'd7);
+  end
+`endif
+endmodule
+`default_nettype wire
