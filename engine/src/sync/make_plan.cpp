@@ -241,6 +241,30 @@ void fill_times(Plan& plan) {
   plan.job.duration_s = ratio(plan.job.ticks, plan.clock.fpga_hz);
 }
 
+/// The shortest line and the axis, as far as their values are in order, and every check on them. Returns the slots of
+/// the longest line.
+std::int64_t check_line(const Job& job, std::int64_t pixels_per_line, Plan& plan, Violations& violations) {
+  if (!violations.sound({"laser.pulse_divider", "fpga.clock_multiplier", "scanner.slots_per_microvector",
+                         "scanner.turn_slots", "scanner.max_extra_slots", "image.pixels_per_line"})) {
+    return 0;
+  }
+  plan_line(job.scanner, pixels_per_line, plan.clock.ticks_per_slot, plan.line);
+  const std::int64_t longest_line = longest_line_slots(job.scanner, plan.line);
+  check_window(job.scanner, plan.line, longest_line, plan.clock.ticks_per_slot, violations);
+  if (!violations.sound({"laser.seed_hz", "rotary.diameter_mm", "rotary.circumference_mm", "rotary.line_pitch_um",
+                         "rotary.lines_per_revolution"})) {
+    return longest_line;
+  }
+  if (violations.sound({"image.revolutions"})) {
+    check_ticks(job, plan, longest_line, violations);
+  }
+  if (violations.sound({"rotary.encoder_lines", "rotary.interpolation_bits", "rotary.gear", "rotary.max_ab_hz"})) {
+    plan_axis(job.rotary, plan.rotary);
+    check_reach(job, plan, longest_line, violations);
+  }
+  return longest_line;
+}
+
 }  // namespace
 
 Result<Plan> make_plan(const Job& job, std::int64_t pixels_per_line, std::int64_t revolutions) {
@@ -252,15 +276,7 @@ Result<Plan> make_plan(const Job& job, std::int64_t pixels_per_line, std::int64_
   plan.job.revolutions = revolutions;
   plan_clock(job, plan.clock, violations);
   plan_lines_per_revolution(job.rotary, plan.rotary, violations);
-  if (!violations.all_sound()) {
-    return violations.error();
-  }
-  plan_axis(job.rotary, plan.rotary);
-  plan_line(job.scanner, pixels_per_line, plan.clock.ticks_per_slot, plan.line);
-  const std::int64_t longest_line = longest_line_slots(job.scanner, plan.line);
-  check_ticks(job, plan, longest_line, violations);
-  check_window(job.scanner, plan.line, longest_line, plan.clock.ticks_per_slot, violations);
-  check_reach(job, plan, longest_line, violations);
+  const std::int64_t longest_line = check_line(job, pixels_per_line, plan, violations);
   if (!violations.none()) {
     return violations.error();
   }

@@ -52,7 +52,6 @@ class Violations {
     }
     return true;
   }
-  bool all_sound() const { return refused_.empty(); }
   bool none() const { return text_.empty(); }
   Error error() const { return {code_, text_}; }
 
