@@ -258,6 +258,7 @@ class Verifier::Worker final : public PinObserver {
     tally_.end_tick = std::max(tally_.end_tick, device_->status().tick);
     if (!sent) {
       tally_.refused.add(first_ordinal_ + landing_.lines(), sent.error().message);
+      device_ = parent_.devices_(*this);  // the fault is sticky: go on with a fresh one to see what else is wrong
     }
     if (images_) {
       compare(revolution);

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "gravure/formats/grv.hpp"
+#include "gravure/formats/image_files.hpp"
+#include "gravure/pipeline/compile.hpp"
+#include "job_loader.hpp"
+#include "program_files.hpp"
+#include "verb.hpp"
+
+namespace gravure::cli {
+namespace {
+
+struct Options {
+  std::string job;
+  std::string output;
+  GrvOptions grv;
+};
+
+Json json_of(const ProgramHeader& header, const std::string& output) {
+  Integer fired = 0;
+  for (const std::uint32_t layer : header.layer_of_revolution) {
+    fired += header.layers[layer].fired_pixels;
+  }
+  const Integer pixels =
+      Integer(header.plan.job.revolutions) * header.plan.rotary.lines_per_revolution * header.plan.line.pixels;
+  return {{"program", output},
+          {"revolutions", header.plan.job.revolutions},
+          {"layers", header.layers.size()},
+          {"lines_per_revolution", header.plan.rotary.lines_per_revolution},
+          {"fires", polarity_name(header.fires)},
+          {"fired_pixels", json_integer(fired)},
+          {"pixels", json_integer(pixels)},
+          {"fired_percent", to_double(Rational(Rational(fired) * 100 / Rational(pixels)))}};
+}
+
+Result<int> run(const Options& options, const Command& command) {
+  const ImageFiles files;
+  GRAVURE_TRY(const LoadedJob loaded, load_job(options.job, files, true));
+  GRAVURE_TRY(Compilation made, prepare_compilation(loaded, options.output));
+  GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
+              create_grv(options.output, static_cast<std::int64_t>(made.header.layers.size()),
+                         loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), options.grv));
+  Result<ProgramHeader> compiled = [&] {
+    ProgressBar bar("compile");
+    CompileOptions compile_options;
+    compile_options.memory_bytes = command.memory_bytes();
+    compile_options.threads = command.threads;
+    compile_options.cancel = &cancel_token();
+    compile_options.progress = &bar;
+    return compile(std::move(made.header), made.stack, files, *sink, compile_options);
+  }();
+  GRAVURE_TRY(const ProgramHeader header, std::move(compiled));
+  for (const std::string& warning : header.plan.warnings) {
+    warn(warning);
+  }
+  const Json result = json_of(header, options.output);
+  if (command.json) {
+    print_json(result);
+  } else {
+    print(fmt::format("{}: {} revolutions from {} stored layers; {} fires, {:.2f} % of the pixels\n", options.output,
+                      header.plan.job.revolutions, header.layers.size(), polarity_name(header.fires),
+                      result["fired_percent"].get<double>()));
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_compile(CLI::App& app, Command& command) {
+  CLI::App* verb = add_verb(app, command, "compile", "Image stack to program file");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("JOB", options->job, "Job file")->required();
+  verb->add_option("-o,--output", options->output, "Program file to write (.grv)")->required();
+  verb->add_option("--compression", options->grv.compression, "How line bits are stored")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, GrvOptions::Compression>{{"zstd", GrvOptions::Compression::zstd},
+                                                         {"deflate", GrvOptions::Compression::deflate},
+                                                         {"none", GrvOptions::Compression::none}},
+          CLI::ignore_case));
+  add_work_options(*verb, command);
+  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+}
+
+}  // namespace gravure::cli

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "gravure/core/file_output.hpp"
+#include "gravure/formats/job_file.hpp"
+#include "gravure/formats/tiff_writer.hpp"
+#include "verb.hpp"
+
+namespace gravure::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string mode;
+  std::string folder = ".";
+};
+
+constexpr int kLayers = 2;
+
+/// A diamond lattice that closes round the circumference; the second layer keeps only its crossings.
+std::vector<std::byte> starter_picture(int layer) {
+  constexpr int kCell = 16;  // pixels and lines; divides both sides
+  static_assert(kStarterPixels % kCell == 0 && kStarterLines % kCell == 0 && kStarterPixels % 8 == 0);
+  std::vector<std::byte> bits(static_cast<std::size_t>(kStarterPixels / 8) * kStarterLines);
+  for (int y = 0; y < kStarterLines; ++y) {
+    for (int x = 0; x < kStarterPixels; ++x) {
+      const bool rising = (x + y) % kCell < 4;
+      const bool falling = (x - y + kStarterLines) % kCell < 4;
+      if (layer == 0 ? rising || falling : rising && falling) {
+        bits[static_cast<std::size_t>(y * (kStarterPixels / 8) + x / 8)] |= static_cast<std::byte>(0x80U >> (x % 8));
+      }
+    }
+  }
+  return bits;
+}
+
+Result<int> run(const Options& options, const Command& command) {
+  const fs::path job = fs::path(options.folder) / "job.toml";
+  const fs::path layers = fs::path(options.folder) / "layers";
+  std::error_code failed;
+  if (fs::exists(job, failed)) {
+    return Error{ErrorCode::bad_argument, job.string() + ": is there already; give another folder"};
+  }
+  fs::create_directories(layers, failed);
+  if (failed) {
+    return Error{ErrorCode::io, layers.string() + ": cannot make the folder: " + failed.message()};
+  }
+  std::vector<std::string> written;
+  for (int layer = 0; layer < kLayers; ++layer) {
+    const std::string path = (layers / fmt::format("layer_{:03}.tif", layer)).string();
+    BilevelTiffPage page;
+    page.width = kStarterPixels;
+    page.height = kStarterLines;
+    GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(path, page));
+    GRAVURE_CHECK(writer.append_rows(starter_picture(layer)));
+    GRAVURE_CHECK(writer.commit());
+    written.push_back(path);
+  }
+  GRAVURE_CHECK(write_file(job.string(), starter_job(Mode::rotary)));
+  written.insert(written.begin(), job.string());
+  if (command.json) {
+    print_json({{"written", written}});
+  } else {
+    for (const std::string& path : written) {
+      print(path + "\n");
+    }
+    print(fmt::format("next: gravure verify {}\n", job.string()));
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_init(CLI::App& app, Command& command) {
+  CLI::App* verb = add_verb(app, command, "init", "Write a commented starter job that runs as it is");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("--mode", options->mode, "Kind of job: rotary")->required()->check(CLI::IsMember({"rotary"}));
+  verb->add_option("DIR", options->folder, "Folder to write to")->capture_default_str();
+  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+}
+
+}  // namespace gravure::cli

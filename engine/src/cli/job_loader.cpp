@@ -1,0 +1,129 @@
+#include "job_loader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "gravure/formats/image_files.hpp"
+#include "gravure/formats/job_file.hpp"
+#include "gravure/sync/make_plan.hpp"
+
+namespace gravure::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool names_images(const ImageSettings& image) {
+  return !image.files.empty() || image.depth_map.has_value();
+}
+
+/// Relative to the folder where that is possible, so that a job and its program can move together.
+std::string relative_to(const std::string& path, const fs::path& folder) {
+  std::error_code failed;
+  const fs::path near = fs::proximate(path, folder.empty() ? fs::path(".") : folder, failed);
+  return failed ? path : near.generic_string();
+}
+
+}  // namespace
+
+Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, bool need_images) {
+  LoadedJob loaded;
+  GRAVURE_TRY(loaded.job, read_job(path));
+  const ImageSettings& image = loaded.job.image;
+  if (names_images(image)) {
+    Result<ImageStack> stack = scan_stack(loaded.job, opener);
+    if (stack) {
+      loaded.images = std::move(stack).value();
+    } else if (need_images || !image.pixels_per_line) {
+      return stack.error();
+    }
+  } else if (need_images) {
+    return Error{ErrorCode::bad_argument, path + ": [image] names no files: give image.files or image.depth_map"};
+  }
+  std::optional<std::int64_t> layers = image.levels;
+  if (loaded.images) {
+    layers = loaded.images->layers;
+    loaded.pixels_per_line = scan_size(image, loaded.images->width(), loaded.images->height()).pixels_per_line;
+    if (image.pixels_per_line && *image.pixels_per_line != loaded.pixels_per_line) {
+      return Error{ErrorCode::bad_argument, path +
+                                                ": image.pixels_per_line = " + std::to_string(*image.pixels_per_line) +
+                                                ": the images have " + std::to_string(loaded.pixels_per_line)};
+    }
+  } else {
+    loaded.pixels_per_line = image.pixels_per_line.value_or(0);
+  }
+  GRAVURE_TRY(loaded.revolutions, resolve_revolutions(loaded.job, layers));
+  GRAVURE_TRY(loaded.plan, make_plan(loaded.job, loaded.pixels_per_line, loaded.revolutions));
+  if (loaded.images) {
+    GRAVURE_TRY(const std::vector<std::string> warnings, check_stack(loaded.plan, loaded.job, *loaded.images));
+    std::vector<std::string>& all = loaded.plan.warnings;
+    all.insert(all.end(), loaded.images->warnings.begin(), loaded.images->warnings.end());
+    all.insert(all.end(), warnings.begin(), warnings.end());
+  } else if (names_images(image)) {
+    loaded.plan.warnings.emplace_back("the images are not there yet; planned with image.pixels_per_line = " +
+                                      std::to_string(loaded.pixels_per_line));
+  }
+  return loaded;
+}
+
+LayerStack stack_settings(const ImageSettings& image, const Plan& plan) {
+  LayerStack stack;
+  stack.lines = plan.rotary.lines_per_revolution;
+  stack.pixels = plan.line.pixels;
+  stack.lines_along = image.lines_along;
+  stack.fires = image.fires;
+  stack.threshold = image.threshold;
+  stack.levels = image.depth_map ? image.levels.value_or(0) : 0;
+  stack.depth_min = image.depth_min;
+  stack.depth_max = image.depth_max;
+  return stack;
+}
+
+Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::string& program_path) {
+  Compilation made;
+  const ImageStack& images = *loaded.images;
+  const fs::path job_folder = fs::path(loaded.job.path).parent_path();
+  ProgramHeader& header = made.header;
+  header.plan = loaded.plan;
+  header.job_text = loaded.job.text;
+  header.job_path = relative_to(loaded.job.path, fs::path(program_path).parent_path());
+  header.fires = loaded.job.image.fires;
+  header.lines_along = loaded.job.image.lines_along;
+  made.stack = stack_settings(loaded.job.image, loaded.plan);
+  made.stack.samples = images.images.front().info.samples;
+  made.stack.random_access = std::all_of(images.images.begin(), images.images.end(),
+                                         [](const StackImage& image) { return image.info.random_access; });
+
+  std::map<std::int64_t, std::uint32_t> stored;  // layer of the stack -> layer of the program
+  std::map<std::int64_t, std::int64_t> sources;  // image of the stack -> source of the program
+  std::map<std::string, std::string> hashes;
+  for (std::int64_t r = 0; r < loaded.revolutions; ++r) {
+    const std::int64_t layer = layer_of_revolution(loaded.job.image.order, images.layers, r);
+    const auto [known, is_new] = stored.try_emplace(layer, static_cast<std::uint32_t>(header.layers.size()));
+    header.layer_of_revolution.push_back(known->second);
+    if (!is_new) {
+      continue;
+    }
+    const std::int64_t image_index = images.depth_map ? 0 : layer;
+    const StackImage& image = images.images[static_cast<std::size_t>(image_index)];
+    const auto [source, new_source] =
+        sources.try_emplace(image_index, static_cast<std::int64_t>(header.sources.size()));
+    if (new_source) {
+      std::string& hash = hashes[image.path];
+      if (hash.empty()) {
+        GRAVURE_TRY(hash, sha256_file(image.path));
+      }
+      header.sources.push_back(
+          {relative_to(image.path, job_folder), image.page, image.info.width, image.info.height, hash});
+    }
+    StoredLayer stored_layer;
+    stored_layer.starts_reverse = line_is_reverse(loaded.plan, r, 0);
+    stored_layer.source = source->second;
+    stored_layer.level = images.depth_map ? layer : 0;
+    header.layers.push_back(stored_layer);
+    made.stack.layers.push_back({image.path, image.page, stored_layer.level});
+  }
+  return made;
+}
+
+}  // namespace gravure::cli

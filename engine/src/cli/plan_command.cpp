@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "gravure/core/exact.hpp"
+#include "gravure/formats/image_files.hpp"
+#include "gravure/formats/plan_json.hpp"
+#include "job_loader.hpp"
+#include "plan_text.hpp"
+#include "verb.hpp"
+
+namespace gravure::cli {
+
+std::string plan_text(const Plan& plan) {
+  const auto number = [](const Rational& value) {
+    return denominator_of(value) == 1 ? to_string(value) : fmt::format("{:.8g}", to_double(value));
+  };
+  std::string text;
+  const auto row = [&](const char* name, const std::string& value) { text += fmt::format("{:<10}{}\n", name, value); };
+  row("job", fmt::format("{} (rotary), {} revolutions, {} ticks = {:.3f} s", plan.title, plan.job.revolutions,
+                         plan.job.ticks, to_double(plan.job.duration_s)));
+  row("clock", fmt::format("seed {} Hz, FPGA {} Hz, pulses {} Hz (every seed pulse no. {}), {} ticks a slot",
+                           plan.clock.seed_hz, plan.clock.fpga_hz, number(plan.clock.pulse_hz),
+                           plan.clock.pulse_divider, plan.clock.ticks_per_slot));
+  row("line",
+      fmt::format("{} pixels in {} slots = {} ticks, {} lines/s, scan speed {} m/s", plan.line.pixels, plan.line.slots,
+                  plan.line.ticks, number(plan.line.rate_hz), number(plan.line.scan_speed_m_s)));
+  row("window", fmt::format("first slot {} forward, {} reverse{}", plan.line.forward_first_slot,
+                            plan.line.reverse_first_slot, plan.line.bidirectional ? "" : " (unused: one direction)"));
+  row("rotary",
+      fmt::format("{} lines a revolution, pitch {} um ({:.1f} DPI), {} ticks a revolution, {} rpm, surface {} mm/s",
+                  plan.rotary.lines_per_revolution, number(plan.rotary.line_pitch_um),
+                  25400.0 / to_double(plan.rotary.line_pitch_um), plan.rotary.ticks_per_revolution,
+                  number(plan.rotary.rpm), number(plan.rotary.surface_speed_mm_s)));
+  std::string counter =
+      fmt::format("increment {} every {} ticks, {} bits", plan.ab.increment, plan.ab.prescaler, plan.ab.counter_bits);
+  if (plan.ab.fraction_num != 0) {
+    counter += fmt::format(", fraction {}/{}", plan.ab.fraction_num, plan.ab.fraction_den);
+  }
+  row("A-B", fmt::format("{}: {:.6f} Hz, wanted {:.6f} Hz", counter, to_double(plan.ab.output_hz),
+                         to_double(plan.ab.wanted_hz)));
+  if (plan.ab.exact) {
+    row("seam", fmt::format("drift 0: exact, for ever (limit {} um)", to_decimal_string(plan.ab.seam_limit_um)));
+  } else {
+    row("seam",
+        fmt::format("drift {:.6g} um a revolution = {} lines; limit {} um reached after {} revolutions ({} lines); "
+                    "the published bound would allow {} lines",
+                    to_double(plan.ab.drift_um_per_revolution), to_string(plan.ab.drift_lines_per_revolution),
+                    to_decimal_string(plan.ab.seam_limit_um), to_string(*plan.ab.revolutions_until_limit),
+                    to_string(*plan.ab.lines_until_limit), to_string(plan.ab.bound_lines_until_limit)));
+  }
+  return text;
+}
+
+void add_plan(CLI::App& app, Command& command) {
+  CLI::App* verb = add_verb(app, command, "plan", "Clock tree, line, A-B solution, drift and time of a job");
+  const auto path = std::make_shared<std::string>();
+  verb->add_option("JOB", *path, "Job file")->required();
+  verb->callback([&command, path] {
+    command.run = [&command, path]() -> Result<int> {
+      const ImageFiles files;
+      GRAVURE_TRY(const LoadedJob loaded, load_job(*path, files, false));
+      if (command.json) {
+        print(plan_to_json(loaded.plan) + "\n");
+      } else {
+        print(plan_text(loaded.plan));
+      }
+      for (const std::string& warning : loaded.plan.warnings) {
+        warn(warning);
+      }
+      return kDone;
+    };
+  });
+}
+
+}  // namespace gravure::cli

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gravure/core/layer_lines.hpp"
+#include "gravure/core/program.hpp"
+#include "gravure/pipeline/layer_reader.hpp"
+#include "gravure/twin/exposure.hpp"
+
+namespace gravure::cli {
+
+/// Devices emulated in this process.
+DeviceFactory emulated_devices();
+
+/// The images a program was made from, found again. `missing` says which are not there; then there is no reader.
+struct FoundImages {
+  std::optional<LayerStack> stack;
+  std::vector<std::string> missing;
+};
+
+/// Looks for the sources of a program: below `images_folder` if given (by their path in the program, else by their name
+/// alone), else where its job file is or was, relative to the program.
+Result<FoundImages> find_images(const ProgramHeader& header, const std::string& program_path,
+                                const std::string& images_folder, const ImageOpener& opener);
+
+/// "forward" or "reverse".
+const char* direction_name(bool reverse);
+const char* polarity_name(Fires fires);
+
+}  // namespace gravure::cli

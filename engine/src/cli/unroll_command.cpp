@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "gravure/formats/grv.hpp"
+#include "gravure/formats/image_files.hpp"
+#include "gravure/formats/tiff_writer.hpp"
+#include "gravure/twin/unroll.hpp"
+#include "program_files.hpp"
+#include "verb.hpp"
+
+namespace gravure::cli {
+namespace {
+
+struct Options {
+  std::string program;
+  std::int64_t revolution = 0;
+  std::string output;
+  TiffCompression compression = TiffCompression::deflate;
+};
+
+/// The size tags of the source, where it is still there, so that the picture equals a layer written the same way; else
+/// its size on the workpiece.
+Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& options) {
+  const UnrolledSize size = unrolled_size(header);
+  const double along = 1000.0 / to_double(header.plan.line.pixel_pitch_um);
+  const double across = 1000.0 / to_double(header.plan.rotary.line_pitch_um);
+  const bool rows = header.lines_along == LinesAlong::rows;
+  BilevelTiffPage page;
+  page.width = size.width;
+  page.height = size.height;
+  page.compression = options.compression;
+  page.x_dots_per_mm = rows ? along : across;
+  page.y_dots_per_mm = rows ? across : along;
+  const ImageFiles files;
+  GRAVURE_TRY(const FoundImages found, find_images(header, options.program, {}, files));
+  if (found.stack && options.revolution >= 0 && options.revolution < header.plan.job.revolutions) {
+    const std::uint32_t layer = header.layer_of_revolution[static_cast<std::size_t>(options.revolution)];
+    const LayerInput& input = found.stack->layers[layer];
+    GRAVURE_TRY(const std::unique_ptr<ImageSource> source, files.open(input.path, input.page));
+    page.x_dots_per_mm = source->info().x_dots_per_mm;
+    page.y_dots_per_mm = source->info().y_dots_per_mm;
+  }
+  return page;
+}
+
+Result<int> run(const Options& options, const Command& command) {
+  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
+  const ProgramHeader& header = program->header();
+  GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options));
+  GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(options.output, page));
+  UnrollOptions unroll_options;
+  unroll_options.memory_bytes = command.memory_bytes();
+  unroll_options.cancel = &cancel_token();
+  GRAVURE_CHECK(unroll(
+      *program, emulated_devices(), options.revolution,
+      [&writer](std::span<const std::byte> rows, std::int64_t) { return writer.append_rows(rows); }, unroll_options));
+  GRAVURE_CHECK(writer.commit());
+  const std::uint32_t layer = header.layer_of_revolution[static_cast<std::size_t>(options.revolution)];
+  const SourceImage& source = header.sources[static_cast<std::size_t>(header.layers[layer].source)];
+  if (command.json) {
+    print_json({{"picture", options.output},
+                {"revolution", options.revolution},
+                {"layer", layer},
+                {"source", source.path},
+                {"page", source.page},
+                {"level", header.layers[layer].level},
+                {"width", page.width},
+                {"height", page.height},
+                {"fires", polarity_name(header.fires)}});
+  } else {
+    print(fmt::format("{}: revolution {} as exposed, {} x {}, {} fires; its layer is {} page {} level {}\n",
+                      options.output, options.revolution, page.width, page.height, polarity_name(header.fires),
+                      source.path, source.page, header.layers[layer].level));
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_unroll(CLI::App& app, Command& command) {
+  CLI::App* verb = add_verb(app, command, "unroll", "What one revolution exposes, as the picture it came from");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
+  verb->add_option("--revolution", options->revolution, "Revolution, from 0")->required();
+  verb->add_option("-o,--output", options->output, "Bilevel TIFF to write")->required();
+  verb->add_option("--compression", options->compression, "Of the TIFF; default deflate")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, TiffCompression>{{"none", TiffCompression::none},
+                                                                         {"packbits", TiffCompression::packbits},
+                                                                         {"lzw", TiffCompression::lzw},
+                                                                         {"deflate", TiffCompression::deflate},
+                                                                         {"g4", TiffCompression::g4}}));
+  add_work_options(*verb, command);
+  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+}
+
+}  // namespace gravure::cli

@@ -1,0 +1,79 @@
+#include "verb.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace gravure::cli {
+
+CLI::App* add_verb(CLI::App& app, Command& command, const std::string& name, const std::string& description) {
+  CLI::App* verb = app.add_subcommand(name, description);
+  verb->add_flag("--json", command.json, "Print one JSON document on standard output and nothing else there");
+  return verb;
+}
+
+void add_work_options(CLI::App& verb, Command& command) {
+  verb.add_option("--memory", command.memory_mib, "Budget for all buffers in MiB")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
+      ->capture_default_str();
+  verb.add_option("--threads", command.threads, "Workers; 0: one for each processor")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+}
+
+void print(const std::string& text) {
+  static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout));
+}
+
+void print_json(const Json& document) {
+  print(document.dump(2) + "\n");
+}
+
+void warn(const std::string& text) {
+  std::fprintf(stderr, "gravure: warning: %s\n", text.c_str());
+}
+
+Json json_integer(const Integer& value) {
+  const Integer exact = Integer(1) << 53;
+  if (abs(value) > exact) {
+    return value.str();
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+Json json_ratio(const Rational& value) {
+  return {{"num", json_integer(numerator_of(value))}, {"den", json_integer(denominator_of(value))}};
+}
+
+CancelToken& cancel_token() {
+  static CancelToken token;
+  return token;
+}
+
+ProgressBar::ProgressBar(std::string what) : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+  if (drawn_) {
+    std::fputs("\r\033[K", stderr);
+  }
+}
+
+void ProgressBar::update(std::int64_t done, std::int64_t total) {
+  if (!terminal_ || total <= 0) {
+    return;
+  }
+  const int permille = static_cast<int>(static_cast<double>(done) / static_cast<double>(total) * 1000);
+  if (permille == last_permille_) {
+    return;
+  }
+  last_permille_ = permille;
+  drawn_ = true;
+  constexpr int kWidth = 40;
+  const int filled = permille * kWidth / 1000;
+  const std::string bar =
+      std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(kWidth - filled), '.');
+  std::fprintf(stderr, "\r%s [%s] %5.1f %%", what_.c_str(), bar.c_str(), permille / 10.0);
+}
+
+}  // namespace gravure::cli

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "gravure/core/error.hpp"
+#include "gravure/core/exact.hpp"
+#include "gravure/core/progress.hpp"
+
+namespace gravure::cli {
+
+using Json = nlohmann::ordered_json;
+
+inline constexpr int kDone = 0;
+inline constexpr int kLimitViolated = 1;
+
+/// What the command line asked for: each verb fills in `run`, main() calls it. Standard output belongs to the result
+/// (one JSON document with --json), standard error to everything else.
+struct Command {
+  bool json = false;
+  std::int64_t memory_mib = 256;
+  int threads = 0;
+  std::function<Result<int>()> run;
+
+  std::int64_t memory_bytes() const { return memory_mib << 20; }
+};
+
+/// Adds a verb with its --json.
+CLI::App* add_verb(CLI::App& app, Command& command, const std::string& name, const std::string& description);
+/// Adds --memory and --threads to a verb that works on images.
+void add_work_options(CLI::App& verb, Command& command);
+
+/// One text to standard output.
+void print(const std::string& text);
+/// One JSON document to standard output.
+void print_json(const Json& document);
+/// "gravure: warning: ..." to standard error.
+void warn(const std::string& text);
+
+/// An integer as JSON: a number where a double holds it, else its digits in a string.
+Json json_integer(const Integer& value);
+Json json_ratio(const Rational& value);
+
+/// Set by Ctrl-C.
+CancelToken& cancel_token();
+
+/// A progress bar on standard error, on a terminal only.
+class ProgressBar final : public Progress {
+ public:
+  explicit ProgressBar(std::string what);
+  ~ProgressBar() override;
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  void update(std::int64_t done, std::int64_t total) override;
+
+ private:
+  std::string what_;
+  bool terminal_;
+  bool drawn_ = false;
+  int last_permille_ = -1;
+};
+
+// The verbs, a file each.
+void add_init(CLI::App& app, Command& command);
+void add_plan(CLI::App& app, Command& command);
+void add_suggest(CLI::App& app, Command& command);
+void add_slice(CLI::App& app, Command& command);
+void add_compile(CLI::App& app, Command& command);
+void add_inspect(CLI::App& app, Command& command);
+void add_dump(CLI::App& app, Command& command);
+void add_unroll(CLI::App& app, Command& command);
+void add_verify(CLI::App& app, Command& command);
+void add_emulate(CLI::App& app, Command& command);
+
+}  // namespace gravure::cli

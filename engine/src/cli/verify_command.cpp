@@ -1,0 +1,252 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "gravure/formats/grv.hpp"
+#include "gravure/formats/image_files.hpp"
+#include "gravure/formats/job_file.hpp"
+#include "gravure/formats/plan_json.hpp"
+#include "gravure/pipeline/compile.hpp"
+#include "gravure/sync/make_plan.hpp"
+#include "gravure/twin/verify.hpp"
+#include "job_loader.hpp"
+#include "program_files.hpp"
+#include "verb.hpp"
+
+namespace gravure::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string input;
+  std::string images;
+};
+
+/// The job text in a program must lead to the very plan that stands in it.
+Result<std::optional<std::string>> plan_contradiction(const ProgramHeader& header) {
+  GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));
+  GRAVURE_TRY(Plan again, make_plan(job, header.plan.line.pixels, header.plan.job.revolutions));
+  again.warnings = header.plan.warnings;  // those about images are not made here
+  if (plan_to_json(again) == plan_to_json(header.plan)) {
+    return std::optional<std::string>();
+  }
+  return std::optional<std::string>(
+      fmt::format("the program's plan is not the one its job leads to: increment {} every {} ticks in the program, {} "
+                  "every {} by the job: compile again",
+                  header.plan.ab.increment, header.plan.ab.prescaler, again.ab.increment, again.ab.prescaler));
+}
+
+/// Revolutions shown in the seam table: the first ones, then each about twice the one before, and the last.
+std::set<std::int64_t> shown_revolutions(std::int64_t revolutions) {
+  std::set<std::int64_t> shown;
+  for (const std::int64_t step : {1, 2, 5}) {
+    for (std::int64_t at = step; at <= revolutions; at *= 10) {
+      shown.insert(at - 1);
+    }
+  }
+  shown.insert(revolutions - 1);
+  return shown;
+}
+
+Json json_of(const VerifyReport& report, const ProgramHeader& header) {
+  Json seam = Json::array();
+  for (const std::int64_t r : shown_revolutions(report.revolutions)) {
+    const SeamRow& row = report.seam[static_cast<std::size_t>(r)];
+    seam.push_back({{"after_revolution", row.revolution},
+                    {"drift_lines", json_ratio(row.drift_lines)},
+                    {"drift_um", row.drift_um}});
+  }
+  Json wrong = nullptr;
+  if (report.first_wrong_pixel) {
+    wrong = {{"revolution", report.first_wrong_pixel->revolution},
+             {"line", report.first_wrong_pixel->line},
+             {"column", report.first_wrong_pixel->column}};
+  }
+  return {{"within_limits", report.violations.empty()},
+          {"violations", report.violations},
+          {"notes", report.notes},
+          {"revolutions", report.revolutions},
+          {"lines", report.lines},
+          {"ticks", json_integer(Integer(report.ticks))},
+          {"fires", polarity_name(header.fires)},
+          {"fired_pixels", json_integer(Integer(report.fired_pixels))},
+          {"pixels", json_integer(Integer(report.pixels))},
+          {"images_compared", report.images_compared},
+          {"wrong_pixels", report.wrong_pixels},
+          {"first_wrong_pixel", wrong},
+          {"seam",
+           {{"limit_um", report.seam_limit_um},
+            {"max_um", report.seam_max_um},
+            {"worst", {{"revolution", report.seam_worst_revolution}, {"line", report.seam_worst_line}}},
+            {"accumulated_um", report.seam_end_um},
+            {"drift_um_per_revolution", to_double(header.plan.ab.drift_um_per_revolution)},
+            {"revolutions", seam}}},
+          {"axis",
+           {{"ab_step_um", report.ab_step_um},
+            {"max_error_um", report.axis_error_max_um},
+            {"worst", {{"revolution", report.axis_worst_revolution}, {"line", report.axis_worst_line}}}}}};
+}
+
+std::string text_of(const VerifyReport& report, const ProgramHeader& header) {
+  std::string text =
+      fmt::format("{} revolutions, {} lines, {} ticks emulated; {} fires: {} of {} pixels ({:.2f} %)\n",
+                  report.revolutions, report.lines, report.ticks, polarity_name(header.fires), report.fired_pixels,
+                  report.pixels, 100.0 * static_cast<double>(report.fired_pixels) / static_cast<double>(report.pixels));
+  if (report.images_compared) {
+    text += fmt::format("landed pixels that differ from the images: {}\n", report.wrong_pixels);
+  }
+  text += fmt::format("\n{:>16}  {:>12}  {:>10}\n", "after revolution", "seam um", "limit um");
+  for (const std::int64_t r : shown_revolutions(report.revolutions)) {
+    text += fmt::format("{:>16}  {:>12.6g}  {:>10g}\n", r, report.seam[static_cast<std::size_t>(r)].drift_um,
+                        report.seam_limit_um);
+  }
+  text += fmt::format("\nseam: worst {:.6g} um at revolution {}, line {}; accumulated {:+.6g} um\n", report.seam_max_um,
+                      report.seam_worst_revolution, report.seam_worst_line, report.seam_end_um);
+  text += fmt::format(
+      "axis: one A-B edge is {:.6g} um; edges and ideal turning at most {:.6g} um apart (revolution {}, line {})\n",
+      report.ab_step_um, report.axis_error_max_um, report.axis_worst_revolution, report.axis_worst_line);
+  for (const std::string& note : report.notes) {
+    text += "note: " + note + "\n";
+  }
+  for (const std::string& violation : report.violations) {
+    text += "violation: " + violation + "\n";
+  }
+  text += report.violations.empty() ? "within limits\n" : "NOT within limits\n";
+  return text;
+}
+
+/// Says of differing images whether the files are the ones that were compiled.
+Result<void> note_changed_sources(const ProgramHeader& header, const LayerStack& stack, VerifyReport& report) {
+  std::set<std::string> seen;
+  for (std::size_t layer = 0; layer < header.layers.size(); ++layer) {
+    const SourceImage& source = header.sources[static_cast<std::size_t>(header.layers[layer].source)];
+    if (!seen.insert(stack.layers[layer].path).second) {
+      continue;
+    }
+    GRAVURE_TRY(const std::string now, sha256_file(stack.layers[layer].path));
+    if (now != source.sha256) {
+      report.notes.push_back(stack.layers[layer].path + " is not the file that was compiled (other SHA-256)");
+    }
+  }
+  return {};
+}
+
+Result<int> verify_program(const std::string& path, const Options& options, const Command& command) {
+  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
+  const ProgramHeader& header = program->header();
+  const ImageFiles files;
+  GRAVURE_TRY(const FoundImages found, find_images(header, path, options.images, files));
+  GRAVURE_TRY(const std::optional<std::string> contradiction, plan_contradiction(header));
+  LayerLinesFactory readers;
+  const std::int64_t panel = command.memory_bytes() / 4;
+  if (found.stack) {
+    readers = [&]() -> Result<std::unique_ptr<LayerLines>> {
+      return std::unique_ptr<LayerLines>(std::make_unique<LayerReader>(*found.stack, files, panel));
+    };
+  }
+  Result<VerifyReport> verified = [&] {
+    ProgressBar bar("verify");
+    VerifyOptions verify_options;
+    verify_options.memory_bytes = command.memory_bytes();
+    verify_options.threads = command.threads;
+    verify_options.cancel = &cancel_token();
+    verify_options.progress = &bar;
+    return verify([&path] { return open_grv(path); }, emulated_devices(), readers, verify_options);
+  }();
+  GRAVURE_TRY(VerifyReport report, std::move(verified));
+  if (contradiction) {
+    report.violations.push_back(*contradiction);
+  }
+  for (const std::string& missing : found.missing) {
+    report.notes.push_back("image not found: " + missing);
+  }
+  if (found.stack && report.wrong_pixels > 0) {
+    GRAVURE_CHECK(note_changed_sources(header, *found.stack, report));
+  }
+  if (report.ab_step_um > report.seam_limit_um) {
+    report.notes.push_back(
+        fmt::format("one A-B edge ({:.3f} um) is coarser than limits.seam_um: within an edge the "
+                    "drive's own interpolation decides",
+                    report.ab_step_um));
+  }
+  if (command.json) {
+    print_json(json_of(report, header));
+  } else {
+    print(text_of(report, header));
+  }
+  return report.violations.empty() ? kDone : kLimitViolated;
+}
+
+/// Removes the program that a job was compiled to for verification.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "gravure-XXXXXX").string();
+    if (::mkdtemp(name.data()) != nullptr) {
+      path_ = name;
+    }
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) {
+      fs::remove_all(path_, ignored);
+    }
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+Result<int> verify_job(const Options& options, const Command& command) {
+  const TemporaryFolder folder;
+  if (folder.path().empty()) {
+    return Error{ErrorCode::io, "cannot make a temporary folder: set TMPDIR to a folder with room for the program"};
+  }
+  const std::string path = folder.path() + "/job.grv";
+  const ImageFiles files;
+  GRAVURE_TRY(const LoadedJob loaded, load_job(options.input, files, true));
+  GRAVURE_TRY(Compilation made, prepare_compilation(loaded, path));
+  GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
+              create_grv(path, static_cast<std::int64_t>(made.header.layers.size()),
+                         loaded.plan.rotary.lines_per_revolution, made.header.line_bytes()));
+  {
+    ProgressBar bar("compile");
+    CompileOptions compile_options;
+    compile_options.memory_bytes = command.memory_bytes();
+    compile_options.threads = command.threads;
+    compile_options.cancel = &cancel_token();
+    compile_options.progress = &bar;
+    GRAVURE_CHECK(compile(std::move(made.header), made.stack, files, *sink, compile_options));
+  }
+  for (const std::string& warning : loaded.plan.warnings) {
+    warn(warning);
+  }
+  return verify_program(path, options, command);
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Command& command) {
+  CLI::App* verb =
+      add_verb(app, command, "verify", "Emulate a job or program, compare with its images, and judge the seam");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("JOB|PROGRAM", options->input, "Job file (.toml) or program file (.grv)")->required();
+  verb->add_option("--images", options->images, "Folder with the images, where they are not at the job's paths");
+  add_work_options(*verb, command);
+  verb->callback([&command, options] {
+    command.run = [&command, options] {
+      const bool job = fs::path(options->input).extension() == ".toml";
+      return job ? verify_job(*options, command) : verify_program(options->input, *options, command);
+    };
+  });
+}
+
+}  // namespace gravure::cli
