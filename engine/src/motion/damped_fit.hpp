@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+namespace gravure::motion {
+
+/// Evenly sampled values.
+struct Series {
+  std::vector<double> values;
+  double period_s = 0;
+};
+
+/// offset + sum over modes of exp(-s t) (A cos w t + B sin w t); parameters are offset, then s, w, A, B of each mode.
+struct DampedFit {
+  Eigen::VectorXd parameters;
+  Eigen::MatrixXd covariance;
+  double sum_of_squares = 0;
+  bool solved = false;
+  std::size_t modes() const noexcept { return static_cast<std::size_t>(parameters.size() - 1) / 4; }
+};
+
+/// Poles -s + i w (w > 0) of at most `count` modes by ESPRIT with a lag of `stride` samples. Fewer where the data have
+/// fewer that oscillate.
+std::vector<std::complex<double>> estimate_poles(const Series& series, std::size_t count, std::size_t stride);
+
+/// Levenberg-Marquardt from the given poles.
+DampedFit fit_damped(const Series& series, const std::vector<std::complex<double>>& poles);
+
+}  // namespace gravure::motion
