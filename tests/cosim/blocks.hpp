@@ -3,6 +3,8 @@
 #include "gravure/fpga/ab_generator.hpp"
 #include "gravure/fpga/crc32c.hpp"
 #include "gravure/fpga/fault_latch.hpp"
+#include "gravure/fpga/frame_parser.hpp"
+#include "gravure/fpga/increment_schedule.hpp"
 #include "gravure/fpga/line_fifo.hpp"
 #include "gravure/fpga/line_sequencer.hpp"
 #include "gravure/fpga/scanner_clock.hpp"
@@ -195,6 +197,60 @@ struct FaultLatchPorts {
   static void out(Out& out, Visitor&& visit) {
     visit("fault", out.fault, 3);
     visit("any", out.any);
+  }
+};
+
+struct FrameParserPorts {
+  using Model = fpga::FrameParser;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("clear", in.clear);
+    visit("in_valid", in.in_valid);
+    visit("position_load", in.position_load);
+    visit("in_data", in.in_data, 8);
+    visit("slots_per_line", in.slots_per_line, 16);
+    visit("window_slots", in.window_slots, 16);
+    visit("lines_per_revolution", in.lines_per_revolution, 32);
+    visit("position_revolution", in.position_revolution, 32);
+    visit("position_line", in.position_line, 32);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("push", out.push);
+    visit("commit", out.commit);
+    visit("rollback", out.rollback);
+    visit("line_valid", out.line_valid);
+    visit("sequence_error", out.sequence_error);
+    visit("shape_error", out.shape_error);
+    visit("checksum_error", out.checksum_error);
+    visit("push_data", out.push_data, 8);
+    visit("first_slot", out.first_slot, 16);
+    visit("revolution", out.revolution, 32);
+    visit("line", out.line, 32);
+  }
+};
+
+struct IncrementSchedulePorts {
+  using Model = fpga::IncrementSchedule;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("flush", in.flush);
+    visit("run", in.run);
+    visit("push", in.push);
+    visit("push_increment", in.push_increment, 32);
+    visit("push_clocks", in.push_clocks, 32);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("load_increment", out.load_increment);
+    visit("busy", out.busy);
+    visit("full", out.full);
+    visit("overflow", out.overflow);
+    visit("increment", out.increment, 32);
   }
 };
 

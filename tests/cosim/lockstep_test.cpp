@@ -35,15 +35,24 @@ TEST_P(LockStep, ModelAndRtlShowTheSameOnEveryClock) {
   std::vector<std::uint64_t> in(model->inputs().size());
   std::vector<std::uint64_t> of_model(model->outputs().size());
   std::vector<std::uint64_t> of_rtl(model->outputs().size());
+  std::vector<std::uint64_t> first;
+  std::vector<bool> moved(model->outputs().size());
   in[0] = 1;  // rst
   model->step(in, of_model);
   rtl->step(in, of_rtl);
+  first = of_model;
   for (std::uint64_t clock = 1; clock <= clocks; ++clock) {
     stimulus(dice, in);
     model->step(in, of_model);
     rtl->step(in, of_rtl);
     ASSERT_EQ(of_model, of_rtl) << "clock " << clock << "\ninputs" << show(model->inputs(), in) << "\nmodel"
                                 << show(model->outputs(), of_model) << "\nRTL" << show(model->outputs(), of_rtl);
+    for (std::size_t at = 0; at < first.size(); ++at) {
+      moved[at] = moved[at] || of_model[at] != first[at];
+    }
+  }
+  for (std::size_t at = 0; at < first.size(); ++at) {
+    EXPECT_TRUE(moved[at]) << model->outputs()[at].name << " never moved: the stimulus does not reach it";
   }
 }
 

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+
+#include "gravure/fpga/crc32c.hpp"
+
+namespace gravure::fpga {
+
+/// Bit-exact model of fpga/rtl/frame_parser.v: bytes from the host -> lines that are in sequence, in shape and whole.
+/// A frame is kFrameKind, revolution, line, first slot (64 bits each, little endian), the window's packed bits, and the
+/// CRC-32C of all that but the kind (little endian). Any other frame is rolled back and stops the parser until clear.
+class FrameParser {
+ public:
+  static constexpr std::uint8_t kFrameKind = 0xA5;
+
+  struct Inputs {
+    bool rst = false;
+    bool clear = false;
+    bool in_valid = false;
+    bool position_load = false;  ///< sets the line that must come next
+    std::uint8_t in_data = 0;
+    std::uint16_t slots_per_line = 0;
+    std::uint16_t window_slots = 0;
+    std::uint32_t lines_per_revolution = 0;
+    std::uint32_t position_revolution = 0;
+    std::uint32_t position_line = 0;
+  };
+  struct Outputs {
+    bool push = false;
+    bool commit = false;
+    bool rollback = false;
+    bool line_valid = false;
+    bool sequence_error = false;  ///< the errors are sticky until clear; at most one stands
+    bool shape_error = false;
+    bool checksum_error = false;
+    std::uint8_t push_data = 0;
+    std::uint16_t first_slot = 0;  ///< of the line committed last
+    std::uint32_t revolution = 0;  ///< that must come next
+    std::uint32_t line = 0;
+  };
+
+  Outputs step(const Inputs& in) noexcept;
+
+ private:
+  enum class Part : std::uint8_t { idle, head, bits, check };
+
+  void reset(bool all) noexcept;
+  void take(const Inputs& in, std::uint32_t crc) noexcept;
+  void take_head(const Inputs& in, unsigned place) noexcept;
+  void take_bits(const Inputs& in, unsigned place) noexcept;
+  void take_check(const Inputs& in, unsigned place, std::uint32_t crc) noexcept;
+  void end_frame(const Inputs& in) noexcept;
+  void enter(Part part) noexcept;
+
+  Part part_ = Part::idle;
+  unsigned place_ = 0;  ///< byte within the part; 13 bits
+  bool bad_sequence_ = false;
+  bool bad_shape_ = false;
+  bool bad_checksum_ = false;
+  std::uint16_t new_first_slot_ = 0;
+  Crc32c checksum_;
+  std::uint32_t crc_ = 0;
+  Outputs out_;
+};
+
+}  // namespace gravure::fpga

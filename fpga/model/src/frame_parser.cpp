@@ -1,0 +1,133 @@
+#include "gravure/fpga/frame_parser.hpp"
+
+namespace gravure::fpga {
+namespace {
+
+constexpr unsigned kPlaceMask = 0x1FFF;
+
+unsigned window_bytes(const FrameParser::Inputs& in) noexcept {
+  return (in.window_slots + 7U) / 8U;
+}
+
+std::uint8_t byte_of(std::uint64_t word, unsigned number) noexcept {
+  return static_cast<std::uint8_t>(word >> (8 * number));
+}
+
+}  // namespace
+
+void FrameParser::reset(bool all) noexcept {
+  part_ = Part::idle;
+  place_ = 0;
+  bad_sequence_ = bad_shape_ = bad_checksum_ = false;
+  new_first_slot_ = 0;
+  out_.sequence_error = out_.shape_error = out_.checksum_error = false;
+  out_.rollback = true;
+  if (all) {
+    out_ = {.rollback = true};
+  }
+}
+
+void FrameParser::enter(Part part) noexcept {
+  part_ = part;
+  place_ = 0;
+}
+
+void FrameParser::take_head(const Inputs& in, unsigned place) noexcept {
+  if (place < 8) {
+    bad_sequence_ = bad_sequence_ || in.in_data != byte_of(out_.revolution, place);
+  } else if (place < 16) {
+    bad_sequence_ = bad_sequence_ || in.in_data != byte_of(out_.line, place - 8);
+  } else if (place == 16) {
+    new_first_slot_ = static_cast<std::uint16_t>((new_first_slot_ & 0xFF00U) | in.in_data);
+  } else if (place == 17) {
+    new_first_slot_ = static_cast<std::uint16_t>((new_first_slot_ & 0x00FFU) | (in.in_data << 8U));
+  } else {
+    bad_shape_ = bad_shape_ || in.in_data != 0;
+  }
+  if (place == 23) {
+    enter(window_bytes(in) == 0 ? Part::check : Part::bits);
+  }
+}
+
+void FrameParser::take_bits(const Inputs& in, unsigned place) noexcept {
+  out_.push = true;
+  out_.push_data = in.in_data;
+  if (place == ((window_bytes(in) - 1) & kPlaceMask)) {
+    const unsigned used = in.window_slots % 8U;
+    bad_shape_ = bad_shape_ || (used != 0 && (in.in_data & (0xFFU >> used)) != 0);
+    enter(Part::check);
+  }
+}
+
+void FrameParser::end_frame(const Inputs& in) noexcept {
+  const bool shape = bad_shape_ || new_first_slot_ + in.window_slots > in.slots_per_line;
+  out_.sequence_error = bad_sequence_;
+  out_.shape_error = !bad_sequence_ && shape;
+  out_.checksum_error = !bad_sequence_ && !shape && bad_checksum_;
+  out_.rollback = bad_sequence_ || shape || bad_checksum_;
+  out_.commit = out_.line_valid = !out_.rollback;
+  part_ = Part::idle;
+  if (!out_.commit) {
+    return;
+  }
+  out_.first_slot = new_first_slot_;
+  if (out_.line + 1 >= in.lines_per_revolution) {
+    out_.line = 0;
+    ++out_.revolution;
+  } else {
+    ++out_.line;
+  }
+}
+
+void FrameParser::take_check(const Inputs& in, unsigned place, std::uint32_t crc) noexcept {
+  bad_checksum_ = bad_checksum_ || in.in_data != byte_of(crc, place % 4);
+  if (place == 3) {
+    end_frame(in);
+  }
+}
+
+void FrameParser::take(const Inputs& in, std::uint32_t crc) noexcept {
+  const unsigned place = place_;
+  place_ = (place_ + 1) & kPlaceMask;
+  switch (part_) {
+    case Part::idle:
+      bad_sequence_ = bad_shape_ = bad_checksum_ = false;
+      out_.shape_error = in.in_data != kFrameKind;
+      enter(out_.shape_error ? Part::idle : Part::head);
+      break;
+    case Part::head:
+      take_head(in, place);
+      break;
+    case Part::bits:
+      take_bits(in, place);
+      break;
+    case Part::check:
+      take_check(in, place, crc);
+      break;
+  }
+}
+
+FrameParser::Outputs FrameParser::step(const Inputs& in) noexcept {
+  const bool stopped = out_.sequence_error || out_.shape_error || out_.checksum_error;
+  const bool taken = in.in_valid && !stopped;
+  const std::uint32_t crc = crc_;  // of the bytes before this clock
+  crc_ = checksum_
+             .step({.rst = in.rst,
+                    .start = taken && part_ == Part::idle,
+                    .valid = taken && (part_ == Part::head || part_ == Part::bits),
+                    .data = in.in_data})
+             .crc;
+  out_.push = out_.commit = out_.rollback = out_.line_valid = false;
+  if (in.rst || in.clear) {
+    reset(in.rst);
+  } else if (taken) {
+    take(in, crc);
+  }
+  if (in.position_load && !in.rst) {
+    out_.revolution = in.position_revolution;
+    out_.line = in.position_line;
+  }
+  return out_;
+}
+
+}  // namespace gravure::fpga

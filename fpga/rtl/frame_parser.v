@@ -1,0 +1,167 @@
+// Frame parser: bytes from the host -> verified lines.
+//
+// A frame is 0xA5, revolution, line, first slot (64 bits each, little endian), the window's packed bits, and the CRC-32C of
+// all that but the 0xA5 (little endian). Payload goes to the FIFO on trial; a frame that is in sequence, in shape and
+// whole is committed, any other is rolled back and stops the parser: it takes no byte until clear. Faults are sticky
+// until clear; of several in one frame the first of sequence, shape, checksum is reported.
+// position_load sets the line that must come next (after clear, before a job).
+// Latency: commit or fault one clock after the frame's last byte; line_valid on the same clock as commit.
+// Reset: waiting for revolution 0, line 0.
+`default_nettype none
+module frame_parser (
+    input wire clk,
+    input wire rst,
+    input wire clear,
+    input wire in_valid,
+    input wire [7:0] in_data,
+    input wire [15:0] slots_per_line,
+    input wire [15:0] window_slots,
+    input wire [31:0] lines_per_revolution,
+    input wire position_load,
+    input wire [31:0] position_revolution,
+    input wire [31:0] position_line,
+    output reg push,
+    output reg [7:0] push_data,
+    output reg commit,
+    output reg rollback,
+    output reg line_valid,
+    output reg [15:0] first_slot,
+    output reg sequence_error,
+    output reg shape_error,
+    output reg checksum_error,
+    output reg [31:0] revolution,
+    output reg [31:0] line
+);
+  localparam [7:0] KIND = 8'hA5;
+  localparam [1:0] IDLE = 2'd0, HEAD = 2'd1, BITS = 2'd2, CHECK = 2'd3;
+
+  reg [1:0] state;
+  reg [12:0] place;  // byte within the part
+  reg bad_sequence, bad_shape, bad_checksum;
+  reg [15:0] new_first_slot;
+
+  wire stopped = sequence_error || shape_error || checksum_error;
+  wire take = in_valid && !stopped;
+  wire [12:0] window_bytes = window_slots[15:3] + {12'd0, window_slots[2:0] != 0};
+  wire [7:0] unused_bits = window_slots[2:0] == 0 ? 8'h00 : 8'hFF >> window_slots[2:0];
+`ifdef FORMAL
+  (* anyseq *) reg [31:0] crc;  // the claims hold whatever the checksum is
+`else
+  wire [31:0] crc;
+  crc32c checksum (
+      .clk(clk), .rst(rst), .start(take && state == IDLE), .valid(take && (state == HEAD || state == BITS)),
+      .data(in_data), .crc(crc)
+  );
+`endif
+
+  wire [2:0] byte_number = place[2:0];
+  wire [63:0] expected_revolution = {32'd0, revolution};
+  wire [63:0] expected_line = {32'd0, line};
+  wire wrong_revolution = in_data != expected_revolution[8*byte_number+:8];
+  wire wrong_line = in_data != expected_line[8*byte_number+:8];
+  wire wrong_crc = in_data != crc[8*byte_number[1:0]+:8];
+  wire window_fits = {1'b0, new_first_slot} + {1'b0, window_slots} <= {1'b0, slots_per_line};
+  wire frame_end = take && state == CHECK && place == 3;
+  wire bad = bad_sequence || bad_shape || bad_checksum || wrong_crc || !window_fits;
+  wire last_line = line + 32'd1 >= lines_per_revolution;
+
+  always @(posedge clk) begin
+    push <= 1'b0;
+    commit <= 1'b0;
+    rollback <= 1'b0;
+    line_valid <= 1'b0;
+    if (rst || clear) begin
+      state <= IDLE;
+      place <= 0;
+      bad_sequence <= 1'b0;
+      bad_shape <= 1'b0;
+      bad_checksum <= 1'b0;
+      sequence_error <= 1'b0;
+      shape_error <= 1'b0;
+      checksum_error <= 1'b0;
+      rollback <= 1'b1;
+      new_first_slot <= 0;
+      if (rst) begin
+        push_data <= 0;
+        first_slot <= 0;
+        revolution <= 0;
+        line <= 0;
+      end
+    end else if (take) begin
+      place <= place + 13'd1;
+      case (state)
+        IDLE: begin
+          place <= 0;
+          bad_sequence <= 1'b0;
+          bad_shape <= 1'b0;
+          bad_checksum <= 1'b0;
+          if (in_data == KIND) state <= HEAD;
+          else shape_error <= 1'b1;
+        end
+        HEAD: begin
+          if (place[4:3] == 2'd0 && wrong_revolution) bad_sequence <= 1'b1;
+          if (place[4:3] == 2'd1 && wrong_line) bad_sequence <= 1'b1;
+          if (place == 16) new_first_slot[7:0] <= in_data;
+          if (place == 17) new_first_slot[15:8] <= in_data;
+          if (place >= 18 && in_data != 0) bad_shape <= 1'b1;
+          if (place == 23) begin
+            place <= 0;
+            state <= window_bytes == 0 ? CHECK : BITS;
+          end
+        end
+        BITS: begin
+          push <= 1'b1;
+          push_data <= in_data;
+          if (place == window_bytes - 13'd1) begin
+            if ((in_data & unused_bits) != 0) bad_shape <= 1'b1;
+            place <= 0;
+            state <= CHECK;
+          end
+        end
+        CHECK: begin
+          if (wrong_crc) bad_checksum <= 1'b1;
+          if (frame_end) begin
+            state <= IDLE;
+            commit <= !bad;
+            line_valid <= !bad;
+            rollback <= bad;
+            sequence_error <= bad_sequence;
+            shape_error <= !bad_sequence && (bad_shape || !window_fits);
+            checksum_error <= !bad_sequence && !bad_shape && window_fits && (bad_checksum || wrong_crc);
+            if (!bad) begin
+              first_slot <= new_first_slot;
+              line <= last_line ? 32'd0 : line + 32'd1;
+              if (last_line) revolution <= revolution + 32'd1;
+            end
+          end
+        end
+      endcase
+    end
+    if (position_load && !rst) begin
+      revolution <= position_revolution;
+      line <= position_line;
+    end
+  end
+
+`ifdef FORMAL
+  reg valid = 1'b0;
+  reg was_bad, was_end, was_stopped;
+  reg was_wrong_crc;
+  initial assume (rst);
+  always @(posedge clk) begin
+    valid <= 1'b1;
+    was_end <= frame_end && !rst && !clear;
+    was_bad <= bad;
+    was_wrong_crc <= bad_checksum || wrong_crc;
+    was_stopped <= stopped;
+  end
+  always @(*) if (valid) begin
+    if (commit) assert (was_end && !was_bad && !was_wrong_crc && !was_stopped);  // a bad frame never reaches the gate
+    assert (commit == line_valid);
+    assert (!(commit && rollback));
+    assert (!(commit && push));
+    if (was_end && was_bad) assert (stopped && rollback);
+  end
+`endif
+endmodule
+`default_nettype wire
