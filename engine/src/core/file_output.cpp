@@ -92,6 +92,10 @@ Result<FileOutput> FileOutput::create(const std::string& path) {
   if (path.empty() || std::filesystem::is_directory(path, ignored)) {
     return Error{ErrorCode::io, "output \"" + path + "\" is a folder: give a file name"};
   }
+  // Renaming onto a device or pipe would replace it, not write to it.
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+    return Error{ErrorCode::io, "output \"" + path + "\" is not a regular file: it cannot appear whole; give a file name"};
+  }
   std::string temporary = path + ".part-XXXXXX";
   const Descriptor file(::mkostemp(temporary.data(), O_CLOEXEC));
   if (!file.valid()) {
