@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "gravure/motion/monotone_spline.hpp"
 #include "gravure/motion/plan_profile.hpp"
 #include "gravure/motion/search.hpp"
 
@@ -141,6 +142,22 @@ void search_global(benchmark::State& state, bool robust) {
       benchmark::Counter(static_cast<double>(evaluated), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+/// 100,000 samples x 2,000 control points, with reverse stretches (`constrained`) or the plain fit.
+void fit_spline(benchmark::State& state, int direction) {
+  std::vector<double> parameter;
+  std::vector<double> value;
+  for (int k = 0; k < 100'000; ++k) {
+    const double s = k * 1e-5;
+    parameter.push_back(s);
+    value.push_back(3 * s + 0.004 * std::sin(1e5 * s * s) + 0.03 * std::sin(40 * 6.283185307179586 * s));
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(fit_monotone({parameter, value, 2000, direction}));
+  }
+}
+
+BENCHMARK_CAPTURE(fit_spline, plain, 0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(fit_spline, monotone, 1)->Unit(benchmark::kMillisecond);
 BENCHMARK(respond_closed_form);
 BENCHMARK(respond_runge_kutta)->Arg(1000)->Arg(100)->Arg(10)->Arg(1);
 BENCHMARK(settle_one);

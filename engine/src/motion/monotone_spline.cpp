@@ -1,0 +1,316 @@
+#include "gravure/motion/monotone_spline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "banded.hpp"
+
+namespace gravure::motion {
+namespace {
+
+/// Knot span of `x` in spans (0 .. spans), and the four basis functions there (Cox-de Boor on clamped even knots).
+struct Basis {
+  std::size_t span = 0;  ///< first of the four control points
+  std::array<double, 4> weight{};
+};
+
+Basis basis_at(double x, std::size_t spans) noexcept {
+  Basis basis;
+  const auto last = static_cast<double>(spans - 1);
+  basis.span = static_cast<std::size_t>(std::clamp(std::floor(x), 0.0, last));
+  const auto knot = [spans](std::ptrdiff_t i) {
+    return static_cast<double>(std::clamp<std::ptrdiff_t>(i, 0, static_cast<std::ptrdiff_t>(spans)));
+  };
+  const auto s = static_cast<std::ptrdiff_t>(basis.span);
+  basis.weight = {1, 0, 0, 0};
+  for (std::ptrdiff_t degree = 1; degree <= 3; ++degree) {
+    double saved = 0;
+    for (std::ptrdiff_t r = 0; r < degree; ++r) {
+      const double right = knot(s + r + 1) - x;
+      const double left = x - knot(s + 1 - degree + r);
+      auto& weight = basis.weight[static_cast<std::size_t>(r)];
+      const double part = weight / (right + left);
+      weight = saved + right * part;
+      saved = left * part;
+    }
+    basis.weight[static_cast<std::size_t>(degree)] = saved;
+  }
+  return basis;
+}
+
+double in_spans(double parameter, double from, double to, std::size_t spans) noexcept {
+  return std::clamp((parameter - from) / (to - from), 0.0, 1.0) * static_cast<double>(spans);
+}
+
+/// Least squares of all control points, rising: B'B c = B'a.
+struct Problem {
+  Banded gram;
+  std::vector<double> right;
+  std::vector<bool> fixed;
+  std::vector<double> held;  ///< values of the fixed ones
+};
+
+/// Active constraints merge control points into blocks of one value.
+class ActiveSet {
+ public:
+  explicit ActiveSet(const Problem& problem) : p_(problem), n_(problem.right.size()), active_(n_ - 1, false) {
+    for (std::size_t i = 0; i + 1 < n_; ++i) {
+      active_[i] = p_.fixed[i] && p_.fixed[i + 1] && p_.held[i] == p_.held[i + 1];
+    }
+  }
+
+  /// Exchanges all violated constraints at a time, one when that stops helping (then it cannot cycle).
+  std::vector<double> run(bool constrained) {
+    std::vector<double> c = solve();
+    std::size_t fewest = n_ + 1;
+    int patience = 5;
+    for (std::size_t round = 0; constrained && round < 20 * n_ + 100; ++round) {
+      const std::vector<std::size_t> wrong = violated(c);
+      if (wrong.empty()) {
+        break;
+      }
+      if (wrong.size() < fewest) {
+        fewest = wrong.size();
+        patience = 5;
+      } else {
+        --patience;
+      }
+      const bool all = patience > 0;
+      for (std::size_t k = all ? 0 : wrong.size() - 1; k < wrong.size(); ++k) {
+        active_[wrong[k]] = !active_[wrong[k]];
+      }
+      c = solve();
+    }
+    return c;
+  }
+
+ private:
+  bool both_fixed(std::size_t i) const { return p_.fixed[i] && p_.fixed[i + 1]; }
+
+  /// Block of each control point; a block with a fixed one takes its value.
+  std::vector<double> solve() const {
+    std::vector<std::size_t> block(n_, 0);
+    for (std::size_t i = 1; i < n_; ++i) {
+      block[i] = block[i - 1] + (active_[i - 1] ? 0 : 1);
+    }
+    const std::size_t blocks = block.back() + 1;
+    std::vector<double> value(blocks, 0);
+    std::vector<bool> known(blocks, false);
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (p_.fixed[i]) {
+        known[block[i]] = true;
+        value[block[i]] = p_.held[i];
+      }
+    }
+    Banded matrix(blocks);
+    std::vector<double> right(blocks, 0);
+    const auto add = [&](std::size_t i, std::size_t j, double entry) {
+      const std::size_t a = block[i];
+      const std::size_t b = block[j];
+      if (known[a]) {
+        return;
+      }
+      if (known[b]) {
+        right[a] -= entry * value[b];
+      } else if (a <= b) {
+        matrix.at(a, b - a) += entry;
+      }
+    };
+    for (std::size_t i = 0; i < n_; ++i) {
+      right[block[i]] += known[block[i]] ? 0 : p_.right[i];
+      add(i, i, p_.gram.at(i, 0));
+      for (std::size_t k = 1; k <= Banded::kBand && i + k < n_; ++k) {
+        add(i, i + k, p_.gram.at(i, k));
+        add(i + k, i, p_.gram.at(i, k));
+      }
+    }
+    for (std::size_t b = 0; b < blocks; ++b) {
+      if (known[b]) {
+        matrix.at(b, 0) = 1;
+        right[b] = value[b];
+      }
+    }
+    matrix.solve(right);
+    std::vector<double> c(n_);
+    for (std::size_t i = 0; i < n_; ++i) {
+      c[i] = p_.fixed[i] ? p_.held[i] : right[block[i]];
+    }
+    return c;
+  }
+
+  /// Falling steps that are free, and flat ones that would rather rise (negative multiplier).
+  std::vector<std::size_t> violated(const std::vector<double>& c) const {
+    std::vector<double> gradient = p_.gram.times(c);
+    double scale = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      gradient[i] -= p_.right[i];
+      scale = std::max(scale, std::abs(p_.right[i]));
+    }
+    const std::vector<double> multiplier = multipliers(gradient);
+    const double span = std::max(std::abs(c.front()), std::abs(c.back()));
+    std::vector<std::size_t> wrong;
+    for (std::size_t i = 0; i + 1 < n_; ++i) {
+      if (!both_fixed(i) && (active_[i] ? multiplier[i] < -1e-12 * scale : c[i + 1] - c[i] < -1e-14 * span)) {
+        wrong.push_back(i);
+      }
+    }
+    return wrong;
+  }
+
+  /// Of the active constraints, from sums of the gradient inside each block; a fixed control point takes any force, so
+  /// the sums start at the free side of its block.
+  std::vector<double> multipliers(const std::vector<double>& gradient) const {
+    std::vector<double> multiplier(n_ - 1, 0);
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < n_; ++i) {
+      sum = active_[i] ? sum - gradient[i] : 0;
+      multiplier[i] = sum;
+    }
+    for (std::size_t head = 0; head < n_ && p_.fixed[head] && head + 1 < n_; ++head) {
+      std::size_t last = head;
+      while (last + 1 < n_ && active_[last]) {
+        ++last;
+      }
+      sum = 0;
+      for (std::size_t i = last; i > head; --i) {
+        sum += gradient[i];
+        multiplier[i - 1] = sum;
+      }
+    }
+    return multiplier;
+  }
+
+  const Problem& p_;
+  std::size_t n_;
+  std::vector<bool> active_;
+};
+
+std::size_t held_points(SplineEnd end) noexcept {
+  return end == SplineEnd::free ? 0 : end == SplineEnd::anchored ? 1 : 3;
+}
+
+void hold_ends(const MonotoneFitRequest& r, double sign, Problem& problem) {
+  const std::size_t n = r.control_points;
+  problem.fixed.assign(n, false);
+  problem.held.assign(n, 0);
+  for (std::size_t i = 0; i < held_points(r.start); ++i) {
+    problem.fixed[i] = true;
+    problem.held[i] = sign * r.value.front();
+  }
+  for (std::size_t i = 0; i < held_points(r.end); ++i) {
+    problem.fixed[n - 1 - i] = true;
+    problem.held[n - 1 - i] = sign * r.value.back();
+  }
+}
+
+/// Second differences, where knot spans without values leave control points undecided.
+void add_penalty(Banded& gram) {
+  double trace = 0;
+  for (std::size_t i = 0; i < gram.size(); ++i) {
+    trace += gram.at(i, 0);
+  }
+  const double weight = 1e-9 * trace / static_cast<double>(gram.size());
+  static constexpr std::array<double, 3> kStencil{1, -2, 1};
+  for (std::size_t i = 0; i + 2 < gram.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = a; b < 3; ++b) {
+        gram.at(i + a, b - a) += weight * kStencil[a] * kStencil[b];
+      }
+    }
+  }
+}
+
+Problem problem_of(const MonotoneFitRequest& r, double sign) {
+  const std::size_t n = r.control_points;
+  const std::size_t spans = n - 3;
+  Problem problem{Banded(n), std::vector<double>(n, 0), {}, {}};
+  std::vector<bool> filled(spans, false);
+  for (std::size_t k = 0; k < r.value.size(); ++k) {
+    const Basis basis = basis_at(in_spans(r.parameter[k], r.parameter.front(), r.parameter.back(), spans), spans);
+    filled[basis.span] = true;
+    for (std::size_t a = 0; a < 4; ++a) {
+      problem.right[basis.span + a] += basis.weight[a] * sign * r.value[k];
+      for (std::size_t b = a; b < 4; ++b) {
+        problem.gram.at(basis.span + a, b - a) += basis.weight[a] * basis.weight[b];
+      }
+    }
+  }
+  if (r.value.size() < 2 * n || std::find(filled.begin(), filled.end(), false) != filled.end()) {
+    add_penalty(problem.gram);
+  }
+  hold_ends(r, sign, problem);
+  return problem;
+}
+
+Result<void> check_fit_request(const MonotoneFitRequest& r) {
+  const std::size_t least = std::max<std::size_t>(4, held_points(r.start) + held_points(r.end));
+  if (r.control_points < least || r.control_points > 1'000'000) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("fit_monotone: control_points = {}: must be from {} to 1000000", r.control_points, least)};
+  }
+  if (r.value.size() < 2 || r.value.size() != r.parameter.size() || r.direction < -1 || r.direction > 1) {
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format(
+            "fit_monotone: {} parameters, {} values, direction {}: at least 2 of each, and a direction of -1, 0 "
+            "or 1 are needed",
+            r.parameter.size(), r.value.size(), r.direction)};
+  }
+  for (std::size_t k = 0; k < r.value.size(); ++k) {
+    if (!std::isfinite(r.value[k]) || !std::isfinite(r.parameter[k]) ||
+        (k > 0 && !(r.parameter[k] > r.parameter[k - 1]))) {
+      return Error{ErrorCode::bad_argument,
+                   fmt::format("fit_monotone: sample {}: parameter {} and value {} must be finite and parameters rise",
+                               k + 1, r.parameter[k], r.value[k])};
+    }
+  }
+  const bool both_held = r.start != SplineEnd::free && r.end != SplineEnd::free;
+  if (both_held && r.direction * (r.value.back() - r.value.front()) < 0) {
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("fit_monotone: the held ends {} and {} lie against the direction {}", r.value.front(),
+                             r.value.back(), r.direction)};
+  }
+  return {};
+}
+
+}  // namespace
+
+double CubicSpline::at(double parameter) const noexcept {
+  const std::size_t spans = control_points.size() - 3;
+  const Basis basis = basis_at(in_spans(parameter, from, to, spans), spans);
+  double value = 0;
+  for (std::size_t a = 0; a < 4; ++a) {
+    value += basis.weight[a] * control_points[basis.span + a];
+  }
+  return value;
+}
+
+Result<MonotoneFit> fit_monotone(const MonotoneFitRequest& r) {
+  GRAVURE_CHECK(check_fit_request(r));
+  const double sign = r.direction < 0 ? -1 : 1;
+  const Problem problem = problem_of(r, sign);
+  std::vector<double> c = ActiveSet(problem).run(r.direction != 0);
+  double before = c.front();
+  for (double& point : c) {
+    // Blocks are equal but for the last bit of the tolerance: make the promise exact.
+    point = r.direction != 0 ? std::max(point, before) : point;
+    before = point;
+  }
+  MonotoneFit fit{{r.parameter.front(), r.parameter.back(), std::move(c)}, 0, 0};
+  for (double& point : fit.spline.control_points) {
+    point *= sign;
+  }
+  double squares = 0;
+  for (std::size_t k = 0; k < r.value.size(); ++k) {
+    const double off = std::abs(fit.spline.at(r.parameter[k]) - r.value[k]);
+    squares += off * off;
+    fit.largest = std::max(fit.largest, off);
+  }
+  fit.rms = std::sqrt(squares / static_cast<double>(r.value.size()));
+  return fit;
+}
+
+}  // namespace gravure::motion
