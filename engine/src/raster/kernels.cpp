@@ -1,6 +1,7 @@
 #include "gravure/raster/kernels.hpp"
 
 #include "avx2.hpp"
+#include "avx512.hpp"
 #include "gravure/raster/count.hpp"
 #include "gravure/raster/runs.hpp"
 #include "gravure/raster/transpose.hpp"
@@ -41,6 +42,22 @@ constexpr Kernels kAvx2 = {
     .transpose = avx2::transpose,
     .append_runs = avx2::append_runs,
 };
+
+constexpr Kernels kAvx512 = {
+    .isa = Isa::avx512,
+    .place_line = avx512::place_line,
+    .place_rows = avx512::place_rows,
+    .popcount = avx512::popcount,
+    .first_difference = avx2::first_difference,
+    .count_differences = avx512::count_differences,
+    .threshold_u8 = avx512::threshold_u8,
+    .threshold_u16 = avx512::threshold_u16,
+    .threshold_f32 = avx512::threshold_f32,
+    .slice_u8 = avx512::slice_u8,
+    .slice_u16 = avx512::slice_u16,
+    .transpose = avx2::transpose,
+    .append_runs = avx512::append_runs,
+};
 #endif
 
 }  // namespace
@@ -61,6 +78,9 @@ const Kernels* kernels_for(Isa isa) noexcept {
 #ifdef GRAVURE_HAS_X86_KERNELS
   if (isa == Isa::avx2) {
     return avx2::cpu_has_avx2() ? &kAvx2 : nullptr;
+  }
+  if (isa == Isa::avx512) {
+    return avx512::cpu_has_avx512() ? &kAvx512 : nullptr;
   }
 #endif
   return isa == Isa::portable ? &kPortable : nullptr;

@@ -184,13 +184,16 @@ struct Leaf {
     const auto below = static_cast<Sample>(static_cast<Sample>(limit - 1) ^ top<Sample>());
     const Sample* from = piece.samples.data();
     std::int64_t i = 0;
-    for (; i + 32 <= piece.size; i += 32, dst += 4) {
-      const std::uint32_t bits = cut_arranged(from + i, below);
+    for (; i + 64 <= piece.size; i += 64, dst += 8) {
+      const std::uint64_t bits = cut_arranged(from + i, below) | std::uint64_t{cut_arranged(from + i + 32, below)}
+                                                                     << 32;
       std::memcpy(dst, &bits, sizeof bits);
     }
-    if (i < piece.size) {
-      const std::uint32_t bits = cut_arranged(from + i, below);
-      std::memcpy(dst, &bits, static_cast<std::size_t>(packed_bytes(piece.size - i)));
+    for (; i < piece.size; i += 32) {
+      std::uint32_t bits = cut_arranged(from + i, below);
+      for (std::int64_t k = i; k < piece.size && k < i + 32; k += 8, bits >>= 8) {
+        *dst++ = static_cast<std::byte>(bits);
+      }
     }
   }
 };
