@@ -62,33 +62,126 @@ class ActiveSet {
     }
   }
 
-  /// Exchanges all violated constraints at a time, one when that stops helping (then it cannot cycle).
+  /// Exchanges all violated constraints at a time, which mostly ends in a few rounds; where it does not, a descent that
+  /// stays feasible and so cannot cycle.
   std::vector<double> run(bool constrained) {
     std::vector<double> c = solve();
-    std::size_t fewest = n_ + 1;
-    int patience = 5;
-    for (std::size_t round = 0; constrained && round < 20 * n_ + 100; ++round) {
+    for (int round = 0; constrained && round < 30; ++round) {
       const std::vector<std::size_t> wrong = violated(c);
       if (wrong.empty()) {
-        break;
+        return c;
       }
-      if (wrong.size() < fewest) {
-        fewest = wrong.size();
-        patience = 5;
-      } else {
-        --patience;
-      }
-      const bool all = patience > 0;
-      for (std::size_t k = all ? 0 : wrong.size() - 1; k < wrong.size(); ++k) {
-        active_[wrong[k]] = !active_[wrong[k]];
+      for (const std::size_t i : wrong) {
+        active_[i] = !active_[i];
       }
       c = solve();
     }
-    return c;
+    return constrained ? descend_from(feasible_start()) : c;
   }
 
  private:
   bool both_fixed(std::size_t i) const { return p_.fixed[i] && p_.fixed[i + 1]; }
+
+  /// Holds whatever falls until nothing does.
+  std::vector<double> feasible_start() {
+    while (true) {
+      std::vector<double> c = solve();
+      bool fell = false;
+      for (std::size_t i = 0; i + 1 < n_; ++i) {
+        if (!active_[i] && !both_fixed(i) && c[i + 1] < c[i]) {
+          active_[i] = fell = true;
+        }
+      }
+      if (!fell) {
+        return c;
+      }
+    }
+  }
+
+  /// Releases constraints that hold the cost up, all at once or, when that gained nothing, the strongest alone.
+  std::vector<double> descend_from(std::vector<double> c) {
+    bool one_at_a_time = false;
+    for (std::size_t round = 0; round < 3 * n_ + 100; ++round) {
+      const std::vector<double> pull = multipliers(gradient_at(c));
+      std::vector<std::size_t> held;
+      for (std::size_t i = 0; i + 1 < n_; ++i) {
+        if (active_[i] && !both_fixed(i) && pull[i] < -tolerance()) {
+          held.push_back(i);
+        }
+      }
+      if (held.empty()) {
+        break;
+      }
+      if (one_at_a_time) {
+        held = {*std::min_element(held.begin(), held.end(),
+                                  [&](std::size_t i, std::size_t j) { return pull[i] < pull[j]; })};
+      }
+      for (const std::size_t i : held) {
+        active_[i] = false;
+      }
+      std::vector<double> next = walk_down(c);
+      const bool gained = cost(next) < cost(c) - 1e-14 * std::abs(cost(c));
+      c = gained ? std::move(next) : std::move(c);
+      if (!gained && one_at_a_time) {
+        break;
+      }
+      one_at_a_time = !gained;
+    }
+    return c;
+  }
+
+  /// Towards the optimum of the free blocks, holding each step that would begin to fall on the way.
+  std::vector<double> walk_down(std::vector<double> c) {
+    while (true) {
+      const std::vector<double> target = solve();
+      double share = 1;
+      std::size_t first = n_;
+      for (std::size_t i = 0; i + 1 < n_; ++i) {
+        const double rise = std::max(0.0, c[i + 1] - c[i]);
+        const double wanted = target[i + 1] - target[i];
+        if (!active_[i] && !both_fixed(i) && wanted < 0 && rise / (rise - wanted) < share) {
+          share = rise / (rise - wanted);
+          first = i;
+        }
+      }
+      for (std::size_t i = 0; i < n_; ++i) {
+        c[i] += share * (target[i] - c[i]);
+      }
+      if (first == n_) {
+        return target;
+      }
+      for (std::size_t i = 0; i + 1 < n_; ++i) {
+        const bool flat = c[i + 1] - c[i] <= 1e-15 * std::abs(c[i]) && target[i + 1] < target[i];
+        active_[i] = active_[i] || i == first || (flat && !both_fixed(i));
+      }
+    }
+  }
+
+  double cost(const std::vector<double>& c) const {
+    const std::vector<double> product = p_.gram.times(c);
+    double sum = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      sum += c[i] * (product[i] / 2 - p_.right[i]);
+    }
+    return sum;
+  }
+
+  std::vector<double> gradient_at(const std::vector<double>& c) const {
+    std::vector<double> gradient = p_.gram.times(c);
+    for (std::size_t i = 0; i < n_; ++i) {
+      gradient[i] -= p_.right[i];
+    }
+    return gradient;
+  }
+
+  /// Below this a multiplier is rounding.
+  double tolerance() const {
+    double scale = 0;
+    for (const double value : p_.right) {
+      scale = std::max(scale, std::abs(value));
+    }
+    return 1e-12 * scale;
+  }
 
   /// Block of each control point; a block with a fixed one takes its value.
   std::vector<double> solve() const {
@@ -143,17 +236,12 @@ class ActiveSet {
 
   /// Falling steps that are free, and flat ones that would rather rise (negative multiplier).
   std::vector<std::size_t> violated(const std::vector<double>& c) const {
-    std::vector<double> gradient = p_.gram.times(c);
-    double scale = 0;
-    for (std::size_t i = 0; i < n_; ++i) {
-      gradient[i] -= p_.right[i];
-      scale = std::max(scale, std::abs(p_.right[i]));
-    }
-    const std::vector<double> multiplier = multipliers(gradient);
+    const std::vector<double> multiplier = multipliers(gradient_at(c));
+    const double least = -tolerance();
     const double span = std::max(std::abs(c.front()), std::abs(c.back()));
     std::vector<std::size_t> wrong;
     for (std::size_t i = 0; i + 1 < n_; ++i) {
-      if (!both_fixed(i) && (active_[i] ? multiplier[i] < -1e-12 * scale : c[i + 1] - c[i] < -1e-14 * span)) {
+      if (!both_fixed(i) && (active_[i] ? multiplier[i] < least : c[i + 1] - c[i] < -1e-14 * span)) {
         wrong.push_back(i);
       }
     }
