@@ -1,0 +1,273 @@
+// Compiling and verifying one 96-megapixel layer against a bare libtiff decode of the same file, in one run, one
+// thread, CPU time. docs/benchmarks.md has the method. Arguments are Google Benchmark's; the defaults interleave 7
+// repetitions.
+#include <benchmark/benchmark.h>
+#include <tiffio.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gravure/emulator/emulated_device.hpp"
+#include "gravure/formats/grv.hpp"
+#include "gravure/formats/image_files.hpp"
+#include "gravure/formats/tiff_writer.hpp"
+#include "gravure/pipeline/compile.hpp"
+#include "gravure/sync/make_plan.hpp"
+#include "gravure/twin/verify.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace gravure;
+
+constexpr std::int64_t kWidth = 3500;
+constexpr std::int64_t kHeight = 27489;
+constexpr std::int64_t kRowBytes = (kWidth + 7) / 8;
+
+/// Hexagonal walls, about 110 transitions a line: what a thresholded honeycomb looks like.
+std::vector<std::byte> honeycomb() {
+  std::vector<std::byte> bits(static_cast<std::size_t>(kRowBytes * kHeight));
+  for (std::int64_t y = 0; y < kHeight; ++y) {
+    for (std::int64_t x = 0; x < kWidth; ++x) {
+      constexpr double kPitch = 61.37;
+      const double a = static_cast<double>(x) / kPitch * 2 * M_PI;
+      const double b = static_cast<double>(y) / kPitch * 2 * M_PI / std::sqrt(3.0);
+      if (std::cos(a) * std::cos(b) + 0.5 * std::cos(2 * b) > 0.1) {
+        bits[static_cast<std::size_t>(y * kRowBytes + x / 8)] |= static_cast<std::byte>(0x80U >> (x % 8));
+      }
+    }
+  }
+  return bits;
+}
+
+/// The same brightness as noise: about half of all neighbours differ. No codec likes it.
+std::vector<std::byte> noise() {
+  std::vector<std::byte> bits(static_cast<std::size_t>(kRowBytes * kHeight));
+  std::uint64_t state = 1;
+  for (std::byte& byte : bits) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    byte = static_cast<std::byte>(state >> 56U);
+  }
+  return bits;
+}
+
+struct Picture {
+  std::string name;
+  std::string path;
+};
+
+/// Stops at the first thing that goes wrong: a benchmark of a failure would mislead.
+template <class T>
+T must(Result<T> result) {
+  if (!result) {
+    std::fprintf(stderr, "%s\n", result.error().message.c_str());
+    std::exit(1);
+  }
+  return std::move(result).value();
+}
+void must(const Result<void>& result) {
+  if (!result) {
+    std::fprintf(stderr, "%s\n", result.error().message.c_str());
+    std::exit(1);
+  }
+}
+
+std::vector<Picture> write_pictures(const fs::path& folder) {
+  const std::map<std::string, TiffCompression> codecs = {{"none", TiffCompression::none},
+                                                         {"PackBits", TiffCompression::packbits},
+                                                         {"LZW", TiffCompression::lzw},
+                                                         {"Deflate", TiffCompression::deflate},
+                                                         {"G4", TiffCompression::g4}};
+  std::vector<Picture> pictures;
+  const std::map<std::string, std::vector<std::byte>> kinds = {{"honeycomb", honeycomb()}, {"noise", noise()}};
+  for (const auto& [kind, bits] : kinds) {
+    for (const auto& [codec, compression] : codecs) {
+      BilevelTiffPage page;
+      page.width = kWidth;
+      page.height = kHeight;
+      page.compression = compression;
+      const std::string path = (folder / (kind + "_" + codec + ".tif")).string();
+      BilevelTiffWriter writer = must(BilevelTiffWriter::create(path, page));
+      must(writer.append_rows(bits));
+      must(writer.commit());
+      pictures.push_back({kind + "/" + codec, path});
+    }
+  }
+  return pictures;
+}
+
+/// Takes chunks and throws them away: compiling without writing.
+class NullSink final : public LineSink {
+ public:
+  std::int64_t lines_per_chunk() const noexcept override { return (std::int64_t{1} << 20) / kRowBytes; }
+  Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const override {
+    benchmark::DoNotOptimize(lines.data());
+    return StoredChunk{address, {}, 0, 0, 0};
+  }
+  Result<void> put(const StoredChunk&) override { return {}; }
+  Result<void> finish(const ProgramHeader&) override { return {}; }
+};
+
+Job job() {
+  Job made;
+  made.laser = {82'000'000, 41, 16'400'000};
+  made.fpga = {2, 32, false, 4'294'967'295U};
+  made.scanner = {8, 20, 1800, 0, true, 0};
+  made.rotary.diameter_mm = 70;
+  made.rotary.lines_per_revolution = kHeight;
+  made.rotary.encoder_lines = 11840;
+  made.rotary.interpolation_bits = 13;
+  made.rotary.max_ab_hz = 4'000'000;
+  made.image.fires = Fires::white;
+  made.limits.seam_um = Rational(1, 2);
+  return made;
+}
+
+struct Case {
+  ProgramHeader header;
+  LayerStack stack;
+};
+
+Case case_of(const std::string& path) {
+  Case made;
+  made.header.plan = must(make_plan(job(), kWidth, 1));
+  made.header.sources.push_back({path, 0, kWidth, kHeight, std::string(64, '0')});
+  made.header.layers.emplace_back();
+  made.header.layer_of_revolution.push_back(0);
+  made.stack.layers.push_back({path, 0, 0});
+  made.stack.lines = kHeight;
+  made.stack.pixels = kWidth;
+  return made;
+}
+
+void decode(benchmark::State& state, const std::string& path) {
+  std::vector<std::byte> buffer;
+  for (auto unused : state) {
+    TIFF* tiff = TIFFOpen(path.c_str(), "rm");
+    buffer.resize(static_cast<std::size_t>(TIFFStripSize(tiff)));
+    for (std::uint32_t strip = 0; strip < TIFFNumberOfStrips(tiff); ++strip) {
+      benchmark::DoNotOptimize(TIFFReadEncodedStrip(tiff, strip, buffer.data(), TIFFStripSize(tiff)));
+    }
+    TIFFClose(tiff);
+  }
+}
+
+void compile_only(benchmark::State& state, const std::string& path) {
+  const ImageFiles files;
+  CompileOptions options;
+  options.threads = 1;
+  for (auto unused : state) {
+    Case made = case_of(path);
+    NullSink sink;
+    must(compile(std::move(made.header), made.stack, files, sink, options));
+  }
+}
+
+void compile_write(benchmark::State& state, const std::string& path, const std::string& output,
+                   GrvOptions::Compression compression) {
+  const ImageFiles files;
+  CompileOptions options;
+  options.threads = 1;
+  GrvOptions grv;
+  grv.compression = compression;
+  for (auto unused : state) {
+    Case made = case_of(path);
+    const std::unique_ptr<LineSink> sink = must(create_grv(output, 1, kHeight, kRowBytes, grv));
+    must(compile(std::move(made.header), made.stack, files, *sink, options));
+  }
+}
+
+void verify_program(benchmark::State& state, const std::string& path, const std::string& output) {
+  const ImageFiles files;
+  const Case made = case_of(path);
+  VerifyOptions options;
+  options.threads = 1;
+  for (auto unused : state) {
+    const VerifyReport report =
+        must(verify([&] { return open_grv(output); },
+                    [](PinObserver& pins) { return std::make_unique<emulator::EmulatedDevice>(&pins); },
+                    [&]() -> Result<std::unique_ptr<LayerLines>> {
+                      return std::unique_ptr<LayerLines>(std::make_unique<LayerReader>(made.stack, files, 0));
+                    },
+                    options));
+    if (report.wrong_pixels != 0) {
+      state.SkipWithError("the program does not show the picture");
+    }
+  }
+}
+
+/// Prints every median, and at the end each as a share of the bare decode.
+class RatioReporter final : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      if (run.aggregate_name == "median") {
+        const std::string& name = run.run_name.function_name;
+        const std::size_t cut = name.rfind('/');
+        ms_[name.substr(0, cut)][name.substr(cut + 1)] = run.GetAdjustedCPUTime();
+      }
+    }
+  }
+  void print_ratios() const {
+    std::printf("\n%-20s %10s %12s %14s %14s %14s   CPU ms; in brackets decode / it\n", "picture", "decode", "compile",
+                "+ write", "+ zstd, write", "verify");
+    for (const auto& [picture, ms] : ms_) {
+      std::printf("%-20s %10.1f", picture.c_str(), ms.at("decode"));
+      for (const char* step : {"compile", "write", "zstd", "verify"}) {
+        std::printf(" %7.1f [%.2f]", ms.at(step), ms.at("decode") / ms.at(step));
+      }
+      std::printf("\n");
+    }
+  }
+
+ private:
+  std::map<std::string, std::map<std::string, double>> ms_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const fs::path folder = fs::temp_directory_path() / "gravure-compile-bench";
+  fs::create_directories(folder);
+  for (const Picture& picture : write_pictures(folder)) {
+    const std::string path = picture.path;
+    const std::string raw = (folder / "raw.grv").string();
+    const std::string packed = path + ".grv";
+    const auto add = [&](const std::string& step, auto function) {
+      benchmark::RegisterBenchmark((picture.name + "/" + step).c_str(), function)->Unit(benchmark::kMillisecond);
+    };
+    {  // verify needs it whichever order the benchmarks run in
+      Case made = case_of(path);
+      const ImageFiles files;
+      const std::unique_ptr<LineSink> sink = must(create_grv(packed, 1, kHeight, kRowBytes));
+      must(compile(std::move(made.header), made.stack, files, *sink, {}));
+    }
+    add("decode", [path](benchmark::State& state) { decode(state, path); });
+    add("compile", [path](benchmark::State& state) { compile_only(state, path); });
+    add("write",
+        [path, raw](benchmark::State& state) { compile_write(state, path, raw, GrvOptions::Compression::none); });
+    add("zstd",
+        [path, raw](benchmark::State& state) { compile_write(state, path, raw, GrvOptions::Compression::zstd); });
+    add("verify", [path, packed](benchmark::State& state) { verify_program(state, path, packed); });
+  }
+  std::vector<char*> arguments(argv, argv + argc);
+  std::string defaults[] = {"--benchmark_repetitions=7", "--benchmark_enable_random_interleaving=true",
+                            "--benchmark_report_aggregates_only=true", "--benchmark_min_time=0.05"};
+  for (std::string& option : defaults) {
+    arguments.insert(arguments.begin() + 1, option.data());
+  }
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  RatioReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  reporter.print_ratios();
+  fs::remove_all(folder);
+  return 0;
+}
