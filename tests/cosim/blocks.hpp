@@ -10,6 +10,7 @@
 #include "gravure/fpga/scanner_clock.hpp"
 #include "gravure/fpga/slot_divider.hpp"
 #include "gravure/fpga/slot_gate.hpp"
+#include "gravure/fpga/synchro.hpp"
 #include "gravure/fpga/watchdog.hpp"
 
 namespace gravure::cosim {
@@ -251,6 +252,31 @@ struct IncrementSchedulePorts {
     visit("full", out.full);
     visit("overflow", out.overflow);
     visit("increment", out.increment, 32);
+  }
+};
+
+struct SynchroPorts {
+  using Model = fpga::Synchro;
+  static Model make() { return Model(6); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("write", in.write);
+    visit("in_valid", in.in_valid);
+    visit("start", in.start);
+    visit("interlock", in.interlock);
+    visit("address", in.address, 8);
+    visit("in_data", in.in_data, 8);
+    visit("write_data", in.write_data, 32);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("a", out.a);
+    visit("b", out.b);
+    visit("gate", out.gate);
+    visit("scan", out.scan);
+    visit("fault", out.fault, 3);
+    visit("read_data", out.read_data, 32);
   }
 };
 

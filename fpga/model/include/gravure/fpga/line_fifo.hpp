@@ -1,13 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace gravure::fpga {
 
-/// Bit-exact model of fpga/rtl/line_fifo.v (W = 8): bytes on trial until commit, forgotten by rollback; only committed
-/// ones are read. `data` means nothing while `valid` is low.
-class LineFifo {
+/// Bit-exact model of fpga/rtl/line_fifo.v (W bits of Word): words on trial until commit, forgotten by rollback; only
+/// committed ones are read. `data` means nothing while `valid` is low.
+template <class Word>
+class TrialFifo {
  public:
   struct Inputs {
     bool rst = false;
@@ -16,17 +18,17 @@ class LineFifo {
     bool commit = false;
     bool rollback = false;
     bool pop = false;
-    std::uint8_t push_data = 0;
+    Word push_data = 0;
   };
   struct Outputs {
     bool valid = false;
-    std::uint8_t data = 0;
+    Word data = 0;
     std::uint32_t level = 0;  ///< committed and not yet popped
     bool full = false;
     bool overflow = false;  ///< sticky until flush
   };
 
-  explicit LineFifo(int address_bits) : memory_(std::size_t{1} << static_cast<unsigned>(address_bits)) {}
+  explicit TrialFifo(int address_bits) : memory_(std::size_t{1} << static_cast<unsigned>(address_bits)) {}
 
   Outputs step(const Inputs& in) noexcept {
     const std::size_t mask = memory_.size() - 1;
@@ -59,11 +61,16 @@ class LineFifo {
   }
 
  private:
-  std::vector<std::uint8_t> memory_;
+  std::vector<Word> memory_;
   std::uint64_t written_ = 0;
   std::uint64_t committed_ = 0;
   std::uint64_t taken_ = 0;
   Outputs out_;
 };
+
+/// The bytes of lines.
+using LineFifo = TrialFifo<std::uint8_t>;
+/// The first slots of whole lines.
+using LineQueue = TrialFifo<std::uint16_t>;
 
 }  // namespace gravure::fpga
