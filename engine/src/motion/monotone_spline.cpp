@@ -56,7 +56,8 @@ struct Problem {
 /// Active constraints merge control points into blocks of one value.
 class ActiveSet {
  public:
-  explicit ActiveSet(const Problem& problem) : p_(problem), n_(problem.right.size()), active_(n_ - 1, false) {
+  explicit ActiveSet(const Problem& problem)
+      : p_(problem), n_(problem.right.size()), active_(n_ - 1, false), solves_left_(200 + 400'000 / n_) {
     for (std::size_t i = 0; i + 1 < n_; ++i) {
       active_[i] = p_.fixed[i] && p_.fixed[i + 1] && p_.held[i] == p_.held[i + 1];
     }
@@ -78,6 +79,9 @@ class ActiveSet {
     }
     return constrained ? descend_from(feasible_start()) : c;
   }
+
+  /// False where the descent was ended before nothing pulled any more; the result is monotone all the same.
+  bool optimal() const noexcept { return solves_left_ > 0; }
 
  private:
   bool both_fixed(std::size_t i) const { return p_.fixed[i] && p_.fixed[i + 1]; }
@@ -101,7 +105,7 @@ class ActiveSet {
   /// Releases constraints that hold the cost up, all at once or, when that gained nothing, the strongest alone.
   std::vector<double> descend_from(std::vector<double> c) {
     bool one_at_a_time = false;
-    for (std::size_t round = 0; round < 3 * n_ + 100; ++round) {
+    while (solves_left_ > 0) {
       const std::vector<double> pull = multipliers(gradient_at(c));
       std::vector<std::size_t> held;
       for (std::size_t i = 0; i + 1 < n_; ++i) {
@@ -121,7 +125,9 @@ class ActiveSet {
       }
       std::vector<double> next = walk_down(c);
       const bool gained = cost(next) < cost(c) - 1e-14 * std::abs(cost(c));
-      c = gained ? std::move(next) : std::move(c);
+      if (gained) {
+        c = std::move(next);
+      }
       if (!gained && one_at_a_time) {
         break;
       }
@@ -134,6 +140,7 @@ class ActiveSet {
   std::vector<double> walk_down(std::vector<double> c) {
     while (true) {
       const std::vector<double> target = solve();
+      solves_left_ -= solves_left_ > 0 ? 1 : 0;
       double share = 1;
       std::size_t first = n_;
       for (std::size_t i = 0; i + 1 < n_; ++i) {
@@ -149,6 +156,9 @@ class ActiveSet {
       }
       if (first == n_) {
         return target;
+      }
+      if (solves_left_ == 0) {
+        return c;
       }
       for (std::size_t i = 0; i + 1 < n_; ++i) {
         const bool flat = c[i + 1] - c[i] <= 1e-15 * std::abs(c[i]) && target[i + 1] < target[i];
@@ -274,6 +284,7 @@ class ActiveSet {
   const Problem& p_;
   std::size_t n_;
   std::vector<bool> active_;
+  std::size_t solves_left_;  ///< for the descent; it gains less and less
 };
 
 std::size_t held_points(SplineEnd end) noexcept {
@@ -380,14 +391,15 @@ Result<MonotoneFit> fit_monotone(const MonotoneFitRequest& r) {
   GRAVURE_CHECK(check_fit_request(r));
   const double sign = r.direction < 0 ? -1 : 1;
   const Problem problem = problem_of(r, sign);
-  std::vector<double> c = ActiveSet(problem).run(r.direction != 0);
+  ActiveSet solver(problem);
+  std::vector<double> c = solver.run(r.direction != 0);
   double before = c.front();
   for (double& point : c) {
     // Blocks are equal but for the last bit of the tolerance: make the promise exact.
     point = r.direction != 0 ? std::max(point, before) : point;
     before = point;
   }
-  MonotoneFit fit{{r.parameter.front(), r.parameter.back(), std::move(c)}, 0, 0};
+  MonotoneFit fit{{r.parameter.front(), r.parameter.back(), std::move(c)}, 0, 0, solver.optimal()};
   for (double& point : fit.spline.control_points) {
     point *= sign;
   }

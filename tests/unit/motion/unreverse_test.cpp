@@ -101,6 +101,7 @@ TEST(MonotoneFit, IsTheConstrainedOptimumOfASlowSolver) {
       path.angle.push_back(walk);
     }
     const MonotoneFitRequest request{path.s, path.angle, 9, 1};
+    ASSERT_TRUE(fit_monotone(request).value().optimal);
     const auto fast = fit_monotone(request).value().spline.control_points;
     const auto slow = slow_monotone(request);
     for (std::size_t i = 0; i < fast.size(); ++i) {
@@ -134,8 +135,33 @@ TEST(MonotoneFit, NeverRunsBackwardsOnNoisyPathsOfAnySize) {
       for (std::size_t k = 1; k < values.size(); ++k) {
         ASSERT_LE(values[k], values[k - 1] + 1e-14);
       }
+      EXPECT_TRUE(fit.value().optimal || samples < points);
       EXPECT_LT(fit.value().rms, samples < 100 ? 0.05 : 0.02);
     }
+  }
+}
+
+TEST(MonotoneFit, StaysMonotoneWhereControlPointsOutnumberSamples) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed() + 5);
+  for (int trial = 0; trial < 200; ++trial) {
+    Path path;
+    double walk = 0;
+    for (int k = 0; k < 8 + trial % 40; ++k) {
+      path.s.push_back(k + (k % 5 == 0 ? 0.7 * random.uniform() : 0.0));
+      walk += random.between(-1, 1.4);
+      path.angle.push_back(walk);
+    }
+    path.angle.back() = std::max(path.angle.back(), path.angle.front() + 1);
+    const auto fit = fit_monotone(
+        {path.s, path.angle, static_cast<std::size_t>(32 << trial % 6), 1, SplineEnd::resting, SplineEnd::anchored});
+    ASSERT_TRUE(fit) << fit.error().message;
+    const auto& c = fit.value().spline.control_points;
+    for (std::size_t i = 1; i < c.size(); ++i) {
+      ASSERT_GE(c[i], c[i - 1]);
+    }
+    EXPECT_EQ(fit.value().spline.at(path.s.front()), path.angle.front());
+    EXPECT_LT(fit.value().rms, 2.5) << trial;
   }
 }
 

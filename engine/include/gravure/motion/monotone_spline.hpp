@@ -38,6 +38,7 @@ struct MonotoneFit {
   CubicSpline spline;
   double rms = 0;  ///< deviation from the values at their parameters
   double largest = 0;
+  bool optimal = true;  ///< false where the search for the least squares was cut short; it is monotone all the same
 };
 
 /// The least-squares curve under the constraint: non-negative least squares on the differences of the control points,
