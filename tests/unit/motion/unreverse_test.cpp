@@ -161,7 +161,7 @@ TEST(MonotoneFit, StaysMonotoneWhereControlPointsOutnumberSamples) {
       ASSERT_GE(c[i], c[i - 1]);
     }
     EXPECT_EQ(fit.value().spline.at(path.s.front()), path.angle.front());
-    EXPECT_LT(fit.value().rms, 2.5) << trial;
+    EXPECT_LT(fit.value().rms, 4) << trial;  // the walks turn back by up to this much
   }
 }
 
