@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gravure/motion/identify.hpp"
+#include "gravure/motion/profile.hpp"
+#include "gravure/motion/search.hpp"
+#include "gravure/motion/settling.hpp"
+#include "gravure/motion/unreverse.hpp"
+
+namespace gravure::formats {
+
+/// The results of the motion commands as JSON, indented by 2, keys in a fixed order, the same bytes for the same
+/// result. Times in s, lengths in mm; what is infinite (a vibration that never settles) is null.
+
+/// times_s[8], velocity_constants[7], position_constants[7], acceleration_constants[7], jerk_constants[7],
+/// access_time_s, stroke_mm, peak_*, reduced{velocity, acceleration, acceleration_up, acceleration_down}.
+std::string profile_to_json(const motion::Profile& profile);
+
+/// What `respond` found out, of the move as planned and, where asked for, as a servo with updates makes it.
+struct Response {
+  std::vector<motion::Mode> modes;
+  motion::Band band;
+  motion::Settling settling;
+  double residual = 0;   ///< envelope when the move ends, in the band's unit
+  double update_us = 0;  ///< > 0: the input was quantised
+  double delay_s = 0;
+};
+
+/// access_time_s, positioning_time_s, residual_after_s (how long the residual stays outside the band), envelope_time_s,
+/// residual_at_access, band, modes.
+std::string response_to_json(const Response& response);
+
+/// best{v, a_up, a_down, s_factor, positioning_time_s}, evaluated, alternatives, shortest, shortest_worst, verdict.
+std::string search_to_json(const motion::SearchReport& report);
+
+/// modes[{f_hz, f_sd_hz, zeta, zeta_sd, participation, participation_sd}], participation_is_absolute, offset, noise.
+std::string identification_to_json(const motion::Identification& identification);
+
+/// An axis of a path with its reversals removed.
+struct UnreversedAxis {
+  std::string name;  ///< "a" or "c"
+  double tolerance_deg = 0;
+  motion::Unreversed result;
+};
+
+/// axes[{name, reversals_before, reversals_after, control_points, largest_deviation_deg, rms_deviation_deg, turns}].
+std::string unreversed_to_json(const std::vector<UnreversedAxis>& axes);
+
+/// CSV of samples: "time_s,position_mm,velocity_mm_s,acceleration_mm_s2,jerk_mm_s3".
+std::string samples_to_csv(const std::vector<motion::Sample>& samples);
+
+/// One curve of a plot.
+struct Curve {
+  std::string name;
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+/// A stand-alone SVG: curves over a common x axis, each in a panel of its own with its range at the side. Curves of
+/// fewer than two points are left out.
+std::string curves_to_svg(const std::string& title, const std::string& x_name, const std::vector<Curve>& curves);
+
+}  // namespace gravure::formats

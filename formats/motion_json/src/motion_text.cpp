@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gravure/formats/motion_json.hpp"
+
+namespace gravure::formats {
+namespace {
+
+constexpr double kWidth = 800;
+constexpr double kPanel = 140;
+constexpr double kLeft = 90;
+constexpr double kTop = 40;
+
+/// Text inside an SVG element.
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    safe += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  }
+  return safe;
+}
+
+struct Range {
+  double low = 0;
+  double high = 1;
+  double share(double value) const noexcept { return (value - low) / (high - low); }
+};
+
+Range range_of(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high > *low ? Range{*low, *high} : Range{*low - 0.5, *low + 0.5};
+}
+
+std::string panel(const Curve& curve, const Range& x, double top) {
+  const Range y = range_of(curve.y);
+  const double height = kPanel - 30;
+  std::string points;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    points += fmt::format("{:.2f},{:.2f} ", kLeft + x.share(curve.x[i]) * (kWidth - kLeft - 10),
+                          top + height - y.share(curve.y[i]) * height);
+  }
+  std::string svg = fmt::format(
+      "<rect x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" fill=\"none\" stroke=\"#999\"/>\n"
+      "<polyline points=\"{4}\" fill=\"none\" stroke=\"#1f5fa8\" stroke-width=\"1.2\"/>\n",
+      kLeft, top, kWidth - kLeft - 10, height, points);
+  svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n", kLeft - 4, top + 10, y.high);
+  svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n", kLeft - 4, top + height, y.low);
+  svg += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", kLeft + 6, top + 14, escaped(curve.name));
+  return svg;
+}
+
+}  // namespace
+
+std::string samples_to_csv(const std::vector<motion::Sample>& samples) {
+  std::string csv = "time_s,position_mm,velocity_mm_s,acceleration_mm_s2,jerk_mm_s3\n";
+  for (const motion::Sample& sample : samples) {
+    const motion::State& s = sample.state;
+    csv += fmt::format("{},{},{},{},{}\n", sample.time_s, s.position_mm, s.velocity_mm_s, s.acceleration_mm_s2,
+                       s.jerk_mm_s3);
+  }
+  return csv;
+}
+
+std::string curves_to_svg(const std::string& title, const std::string& x_name, const std::vector<Curve>& curves) {
+  std::vector<double> all_x;
+  std::size_t shown = 0;
+  for (const Curve& curve : curves) {
+    if (curve.x.size() >= 2) {
+      all_x.insert(all_x.end(), curve.x.begin(), curve.x.end());
+      ++shown;
+    }
+  }
+  const double height = kTop + kPanel * static_cast<double>(shown) + 10;
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+      "<text x=\"{2}\" y=\"22\" font-size=\"14\">{3}</text>\n",
+      kWidth, height, kLeft, escaped(title));
+  if (shown > 0) {
+    const Range x = range_of(all_x);
+    double top = kTop;
+    for (const Curve& curve : curves) {
+      if (curve.x.size() >= 2) {
+        svg += panel(curve, x, top);
+        top += kPanel;
+      }
+    }
+    svg += fmt::format("<text x=\"{}\" y=\"{}\">{:.4g}</text>\n", kLeft, top - 14, x.low);
+    svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g} {}</text>\n", kWidth - 10, top - 14, x.high,
+                       escaped(x_name));
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace gravure::formats

@@ -1,0 +1,75 @@
+#include "gravure/formats/motion_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "indexing_models.hpp"
+
+namespace gravure::formats {
+namespace {
+
+using nlohmann::json;
+
+TEST(MotionJson, OfAProfileHasItsKeys) {
+  const auto profile = motion::plan_profile(motion::test::indexing(500, 30000, 30000, 115)).value();
+  const json parsed = json::parse(profile_to_json(profile));
+  EXPECT_EQ(parsed["times_s"].size(), 8U);
+  EXPECT_EQ(parsed["velocity_constants"].size(), 7U);
+  EXPECT_EQ(parsed["position_constants"].size(), 7U);
+  EXPECT_NEAR(parsed["access_time_s"].get<double>(), 0.115, 1e-12);
+  EXPECT_TRUE(parsed["reduced"]["velocity"].get<bool>());
+  EXPECT_TRUE(parsed["reduced"]["acceleration"].get<bool>());
+}
+
+TEST(MotionJson, OfAResponseHasItsKeysAndNullForNever) {
+  const auto profile = motion::plan_profile(motion::test::indexing(375, 14000, 13500, 82.5)).value();
+  const auto modes = motion::test::fit_b();
+  Response response{modes, motion::test::kPublishedBand, {}, 1, 0, 0};
+  response.settling = motion::settle(modes, motion::input_of(profile), response.band).value();
+  json parsed = json::parse(response_to_json(response));
+  EXPECT_NEAR(parsed["positioning_time_s"].get<double>(), 0.118083014, 1e-9);
+  EXPECT_NEAR(parsed["residual_after_s"].get<double>(), 0.118083014 - 0.101240079, 2e-9);
+  response.settling.positioning_time_s = std::numeric_limits<double>::infinity();
+  parsed = json::parse(response_to_json(response));
+  EXPECT_TRUE(parsed["positioning_time_s"].is_null());
+}
+
+TEST(MotionJson, OfASearchHasItsKeysInOrder) {
+  const motion::SearchProblem problem{1, 500, 10000, 10000, 5e6, 250, {{38, 0.03, 1}}, {motion::BandOf::position, 1e-3},
+                                      5};
+  const std::string text = search_to_json(motion::search(problem, {}).value());
+  const json parsed = json::parse(text);
+  for (const char* key : {"v", "a_up", "a_down", "s_factor", "positioning_time_s"}) {
+    EXPECT_TRUE(parsed["best"].contains(key)) << key;
+  }
+  EXPECT_GT(parsed["evaluated"].get<std::uint64_t>(), 1000U);
+  EXPECT_EQ(parsed["alternatives"].size(), 6U);
+  EXPECT_LT(text.find("\"best\""), text.find("\"evaluated\""));
+}
+
+TEST(MotionJson, OfModesAndPathsHasItsKeys) {
+  motion::Identification found;
+  found.modes.push_back({{40, 0.1, 0.5}, 0.01, 0.001, 0.02});
+  EXPECT_EQ(json::parse(identification_to_json(found))["modes"][0]["f_hz"], 40);
+  const std::vector<double> s{0, 1, 2, 3};
+  const std::vector<double> a{0, 2, 1.9, 3};
+  const auto result = motion::remove_reversals({s, a, 0.5, 8}).value();
+  const json parsed = json::parse(unreversed_to_json({{"a", 0.5, result}}));
+  EXPECT_EQ(parsed["axes"][0]["reversals_before"], 2);
+  EXPECT_EQ(parsed["axes"][0]["reversals_after"], 0);
+}
+
+TEST(MotionText, WritesSamplesAndFigures) {
+  const auto profile = motion::plan_profile(motion::test::indexing(375, 14000, 13500, 82.5)).value();
+  const std::string csv = samples_to_csv(motion::sample_profile(profile, 250).value());
+  EXPECT_EQ(csv.rfind("time_s,", 0), 0U);
+  EXPECT_NE(csv.find(",20,0,0,0\n"), std::string::npos);
+  const std::string svg = curves_to_svg("a < b", "ms", {{"x", {0, 1}, {2, 2}}, {"left out", {0}, {1}}});
+  EXPECT_NE(svg.find("a &lt; b"), std::string::npos);
+  EXPECT_EQ(svg.find("left out"), std::string::npos);
+  EXPECT_NE(svg.find("</svg>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gravure::formats
