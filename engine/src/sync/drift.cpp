@@ -11,7 +11,7 @@ Rational drift_um_after(const Plan& plan, const Integer& lines) {
 }
 
 Seam seam_after_revolution(const Plan& plan, const Integer& revolution) {
-  const Rational turns(Integer(revolution + 1));
+  const Rational turns = Rational(revolution) + Rational(1);
   return {.step_um = plan.ab.drift_um_per_revolution,
           .accumulated_lines = plan.ab.drift_lines_per_revolution * turns,
           .accumulated_um = plan.ab.drift_um_per_revolution * turns};
