@@ -44,19 +44,23 @@ TEST(JobNumber, IsJudgedExactlyAtTheEdgesOfItsRange) {
   }
 }
 
-TEST(JobNumber, IsFoundBehindCharactersOfSeveralBytes) {
-  const std::string text =
-      sample_with("[limits]\nseam_um = 0.5\n", "") + "[limits]\n\"seam_um\" = 0.3 # \xC3\xA4\xE2\x82\xAC\n";
-  const std::string start = "job = { title = \"\xC3\xA4\xE2\x82\xAC\xF0\x9F\x94\xA5\", mode = \"rotary\" }\n";
-  const std::string inlined = "limits = { \"seam\\u005Fum\" = 0.3 }\n";
-  std::string body = text.substr(text.find("[laser]"));
-  const Result<Job> result = parse_job(start + body, "job.toml");
-  ASSERT_TRUE(result) << result.error().message;
-  EXPECT_EQ(result.value().limits.seam_um, Rational(3, 10));
-  body.resize(body.find("[limits]"));
-  const Result<Job> escaped = parse_job(start + inlined + body, "job.toml");
-  ASSERT_TRUE(escaped) << escaped.error().message;
-  EXPECT_EQ(escaped.value().limits.seam_um, Rational(3, 10));
+/// The sample with its images replaced by a depth map, all on one line that ends in `depth_min = literal`.
+std::string sample_with_depth_map(const std::string& name, const std::string& literal) {
+  std::string text = sample_job();
+  const std::size_t image = text.find("[image]");
+  text.erase(image, text.find("[limits]") - image);
+  return "image = { depth_map = \"" + name + "\", levels = 5, fires = \"white\", depth_min = " + literal + " }\n" +
+         text;
+}
+
+TEST(JobNumber, IsFoundBehindCharactersOfSeveralBytesOnItsLine) {
+  for (const char* name :
+       {"a", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\x94\xA5", "\xC3\xA4\xE2\x82\xAC\xF0\x9F\x94\xA5.tif"}) {
+    const Result<Job> result = parse_job(sample_with_depth_map(name, "0.3"), "job.toml");
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result.value().image.depth_min, Rational(3, 10)) << name;
+    EXPECT_EQ(result.value().image.depth_map, name);
+  }
 }
 
 TEST(JobNumber, IsExactWhereverItStands) {
@@ -65,30 +69,24 @@ TEST(JobNumber, IsExactWhereverItStands) {
   SCOPED_TRACE(testing::Message() << "rerun with GRAVURE_TEST_SEED=" << seed);
   std::mt19937 rng(seed);
   const auto below = [&rng](std::uint32_t n) { return static_cast<std::uint32_t>(rng() % n); };
-  const char* const fillings[] = {"", "a", " ", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\x94\xA5"};
-  const std::string head = sample_with("[limits]\nseam_um = 0.5\n", "");
+  const char* const fillings[] = {"/", "a", " ", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\x94\xA5"};
   for (int trial = 0; trial < 500; ++trial) {
-    std::string title;
+    std::string name = "n";
     for (std::uint32_t i = below(30); i > 0; --i) {
-      title += fillings[below(6)];
+      name += fillings[below(6)];
     }
     std::string digits;
     for (std::uint32_t i = 1 + below(60); i > 0; --i) {
       digits += static_cast<char>('0' + below(10));
     }
-    // All on one line, the number last.
-    std::string bent = head;
-    bent.replace(bent.find("[job]"), bent.find("[laser]") - bent.find("[job]"),
-                 "job = { title = \"" + title + "\", mode = \"rotary\" }\n");
-    const std::string line = "limits = { \"seam_um\" = 1." + digits + " }\n";
-    const Result<Job> result = parse_job(line + bent, "job.toml");
+    const Result<Job> result = parse_job(sample_with_depth_map(name, "1." + digits), "job.toml");
     ASSERT_TRUE(result) << result.error().message;
     Integer scale = 1;
     for (std::size_t i = 0; i < digits.size(); ++i) {
       scale *= 10;
     }
-    ASSERT_EQ(result.value().limits.seam_um, Rational(Integer("1" + digits), scale)) << digits;
-    ASSERT_EQ(result.value().title, title);
+    ASSERT_EQ(result.value().image.depth_min, Rational(Integer("1" + digits), scale)) << name << ", " << digits;
+    ASSERT_EQ(result.value().image.depth_map, name);
   }
 }
 
