@@ -40,7 +40,8 @@ void FrameParser::take_head(const Inputs& in, unsigned place) noexcept {
   } else if (place == 16) {
     new_first_slot_ = static_cast<std::uint16_t>((new_first_slot_ & 0xFF00U) | in.in_data);
   } else if (place == 17) {
-    new_first_slot_ = static_cast<std::uint16_t>((new_first_slot_ & 0x00FFU) | (in.in_data << 8U));
+    new_first_slot_ =
+        static_cast<std::uint16_t>((new_first_slot_ & 0x00FFU) | (static_cast<unsigned>(in.in_data) << 8U));
   } else {
     bad_shape_ = bad_shape_ || in.in_data != 0;
   }
