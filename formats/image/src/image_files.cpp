@@ -2,6 +2,7 @@
 
 #include "gravure/formats/image_kind.hpp"
 #include "import_loader.hpp"
+#include "pnm_image.hpp"
 
 namespace gravure {
 
@@ -12,6 +13,9 @@ Result<std::int64_t> ImageFiles::count_pages(const std::string& path) const {
   GRAVURE_TRY(const ImageKind kind, image_kind(path));
   if (kind == ImageKind::tiff) {
     return tiff_.count_pages(path);
+  }
+  if (kind == ImageKind::pnm) {
+    return std::int64_t{1};
   }
   GRAVURE_TRY(const ImageOpener* const opener, module_->opener(path));
   return opener->count_pages(path);
@@ -24,6 +28,9 @@ Result<std::unique_ptr<ImageSource>> ImageFiles::open(const std::string& path, s
     if (info.bilevel()) {
       return tiff_.open(path, page);
     }
+  }
+  if (kind == ImageKind::pnm) {
+    return open_pnm(path, page);
   }
   GRAVURE_TRY(const ImageOpener* const opener, module_->opener(path));
   return opener->open(path, page);

@@ -14,9 +14,9 @@ namespace gravure {
 
 class ImportLoader;
 
-/// Every image gravure reads: bilevel TIFF directly, all else (grey TIFF, PNG, BMP, OpenEXR, PBM/PGM) through the
-/// import module, which is loaded at the first file that needs it. docs/formats/images.md lists what is read and what
-/// is refused. May be used from several threads at once; must outlive the sources it opened.
+/// Every image gravure reads: bilevel TIFF and binary PBM/PGM directly, all else (grey TIFF, PNG, BMP, OpenEXR) through
+/// the import module, which is loaded at the first file that needs it. docs/formats/images.md lists what is read and
+/// what is refused. May be used from several threads at once; must outlive the sources it opened.
 ///
 /// The module is the file GRAVURE_IMPORT_MODULE names, else the first found beside the running program, in
 /// ../lib/gravure or the multi-arch folder from there. Missing: io, with what to install. Of another version:
