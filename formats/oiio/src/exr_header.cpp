@@ -1,0 +1,107 @@
+#include <optional>
+
+#include "header_facts.hpp"
+
+namespace gravure::oiio {
+namespace {
+
+constexpr std::int64_t kMaxHeaderBytes = std::int64_t{1} << 20;
+constexpr std::uint32_t kMultiPart = 0x1000;
+constexpr std::uint32_t kDeep = 0x800;
+constexpr std::int64_t kMaxRowsPerChunk = 256;  // DWAB
+
+/// What of one part's header decides how much memory reading it takes.
+struct Part {
+  std::optional<std::string> data_window;
+  std::optional<std::string> tiles;
+};
+
+/// Walks the attributes of one part: name, type, size, value, until an empty name. Nothing when the bytes run out.
+std::optional<Part> read_part(std::string_view bytes, std::size_t& at) {
+  Part part;
+  while (at < bytes.size()) {
+    const std::size_t name_end = bytes.find('\0', at);
+    if (name_end == at) {
+      ++at;
+      return part;
+    }
+    const std::size_t type_end = name_end == std::string_view::npos ? name_end : bytes.find('\0', name_end + 1);
+    if (type_end == std::string_view::npos || bytes.size() - type_end < 5) {
+      return std::nullopt;
+    }
+    const std::string_view name = bytes.substr(at, name_end - at);
+    const std::size_t value = type_end + 5;
+    const std::size_t size = little_endian(bytes, type_end + 1, 4);
+    if (size > bytes.size() - value) {
+      return std::nullopt;
+    }
+    if (name == "dataWindow" && size == 16) {
+      part.data_window = bytes.substr(value, size);
+    } else if (name == "tiles" && size == 9) {
+      part.tiles = bytes.substr(value, size);
+    }
+    at = value + size;
+  }
+  return std::nullopt;
+}
+
+std::int64_t signed_at(const std::string& bytes, std::size_t at) {
+  return static_cast<std::int32_t>(little_endian(bytes, at, 4));
+}
+
+Result<void> check_part(const HeaderFile& file, const Part& part, std::size_t number) {
+  const std::string place = file.path() + ": page " + std::to_string(number);
+  if (!part.data_window) {
+    return bad_file(place, "has no data window: the file is damaged");
+  }
+  const std::int64_t width = signed_at(*part.data_window, 8) - signed_at(*part.data_window, 0) + 1;
+  const std::int64_t height = signed_at(*part.data_window, 12) - signed_at(*part.data_window, 4) + 1;
+  GRAVURE_CHECK(check_size(place, width, height, 32));
+  if (width > kMaxExrWidth) {
+    return bad_file(place, std::to_string(width) + " pixels wide: OpenEXR is read up to " +
+                               std::to_string(kMaxExrWidth) + "; cut the picture into bands or save it as TIFF");
+  }
+  std::int64_t chunks = (height - 1) / kMaxRowsPerChunk + 1;
+  if (part.tiles) {
+    const std::int64_t tile_width = little_endian(*part.tiles, 0, 4);
+    const std::int64_t tile_height = little_endian(*part.tiles, 4, 4);
+    if (tile_width < 1 || tile_height < 1 || tile_width > kMaxExrWidth ||
+        tile_height > kMaxBlockBytes / 4 / std::max(width, tile_width)) {
+      return bad_file(place, "tiles of " + std::to_string(tile_width) + " x " + std::to_string(tile_height) +
+                                 " pixels: a row of tiles must fit into " + std::to_string(kMaxBlockBytes) +
+                                 " bytes; save it in scan lines");
+    }
+    chunks = ((width - 1) / tile_width + 1) * ((height - 1) / tile_height + 1);
+  }
+  if (chunks > file.size() / 8) {  // the table of chunk offsets alone
+    return bad_file(place, "declares " + std::to_string(width) + " x " + std::to_string(height) +
+                               " pixels, which its " + std::to_string(file.size()) +
+                               " bytes cannot hold: the file is truncated or damaged; copy it again");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_exr_header(const std::string& path) {
+  HeaderFile file(path);
+  const std::string bytes = file.bytes(0, kMaxHeaderBytes);
+  const std::uint32_t version = little_endian(bytes, 4, 4);
+  if ((version & kDeep) != 0) {
+    return bad_file(path, "is a deep OpenEXR image: many samples a pixel are no depth map; flatten it");
+  }
+  std::size_t at = 8;
+  for (std::size_t number = 0;; ++number) {
+    const auto part = read_part(bytes, at);
+    if (!part) {
+      return bad_file(path, "its OpenEXR header does not end: the file is truncated or damaged; copy it again");
+    }
+    GRAVURE_CHECK(check_part(file, *part, number));
+    // A multi-part header ends with one more empty name.
+    if ((version & kMultiPart) == 0 || (at < bytes.size() && bytes[at] == '\0')) {
+      return {};
+    }
+  }
+}
+
+}  // namespace gravure::oiio

@@ -1,0 +1,101 @@
+#include "sample_sets.hpp"
+
+#include <filesystem>
+
+#include "format_set.hpp"
+#include "honeycomb.hpp"
+#include "image_writer.hpp"
+#include "lattice.hpp"
+
+namespace gravure::samples {
+namespace {
+
+constexpr std::int64_t kSmallPixels = 200;
+constexpr std::int64_t kSmallLines = 240;
+
+/// One 16-bit depth map of 96 million pixels: samples/roller/job.toml slices it into 100 layers.
+Result<void> make_roller(const std::string& folder) {
+  const Honeycomb honeycomb;
+  FileOptions options;
+  options.samples = Samples::u16;
+  options.compression = "zip";
+  options.x_dots_per_mm = options.y_dots_per_mm = 125;  // 8 um
+  return write_image(folder + "/honeycomb.tif", Honeycomb::kWidth, Honeycomb::kHeight,
+                     {[&honeycomb](std::int64_t y, auto& levels) { honeycomb.row(y, levels); }}, options);
+}
+
+/// One bilevel mask for every revolution of samples/stent/job.toml.
+Result<void> make_stent(const std::string& folder) {
+  FileOptions options;
+  options.compression = "ccittfax4";
+  options.x_dots_per_mm = options.y_dots_per_mm = 1000.0 / 6;
+  return write_image(folder + "/diamond.tif", DiamondLattice::kWidth, DiamondLattice::kHeight, {DiamondLattice::row},
+                     options);
+}
+
+/// Row of a small layer: a wedge that widens from layer to layer under a coarse grid, unlike its mirror images.
+RowSource small_layer(std::int64_t layer) {
+  return [layer](std::int64_t y, std::vector<std::uint16_t>& levels) {
+    for (std::int64_t x = 0; x < kSmallPixels; ++x) {
+      const bool wedge = x * kSmallLines < (y + 40 * layer) * kSmallPixels / 2;
+      const bool grid = x % 20 < 2 || y % 24 < 3;
+      levels[static_cast<std::size_t>(x)] = wedge != grid ? 65535 : 0;
+    }
+  };
+}
+
+/// The same picture lying on its side: rows become columns.
+RowSource turned(const RowSource& upright) {
+  return [upright](std::int64_t y, std::vector<std::uint16_t>& levels) {
+    std::vector<std::uint16_t> row(static_cast<std::size_t>(kSmallPixels));
+    for (std::int64_t x = 0; x < kSmallLines; ++x) {
+      upright(x, row);
+      levels[static_cast<std::size_t>(x)] = row[static_cast<std::size_t>(y)];
+    }
+  };
+}
+
+/// Six bilevel layers, each in another compression; once upright (job.toml), once on their side (columns.toml).
+Result<void> make_small(const std::string& folder) {
+  std::error_code ignored;  // write_image says so if the folder is missing
+  std::filesystem::create_directories(folder + "/columns", ignored);
+  const char* const compressions[] = {"none", "packbits", "lzw", "zip", "ccittfax4", "lzw"};
+  std::int64_t layer = 0;
+  for (const char* const compression : compressions) {
+    FileOptions options;
+    options.compression = compression;
+    options.tiled = layer == 5;
+    options.x_dots_per_mm = options.y_dots_per_mm = 125;
+    const std::string name = "layer_" + std::to_string(8 + layer) + ".tif";  // 8, 9, 10, ...: natural order matters
+    GRAVURE_CHECK(write_image(folder + "/" + name, kSmallPixels, kSmallLines, {small_layer(layer)}, options));
+    GRAVURE_CHECK(
+        write_image(folder + "/columns/" + name, kSmallLines, kSmallPixels, {turned(small_layer(layer))}, options));
+    ++layer;
+  }
+  return {};
+}
+
+Result<void> make_formats(const std::string& folder) {
+  for (const FormatFile& file : format_files()) {
+    std::vector<RowSource> pages;
+    for (int page = 0; page < file.pages; ++page) {
+      pages.push_back(format_page(page));
+    }
+    GRAVURE_CHECK(write_image(folder + "/" + file.name, kFormatWidth, kFormatHeight, pages, file.options));
+  }
+  return {};
+}
+
+}  // namespace
+
+const std::vector<SampleSet>& sample_sets() {
+  static const std::vector<SampleSet> sets = {
+      {"roller", "16-bit depth map of a honeycomb, 3500 x 27489 pixels", make_roller},
+      {"stent", "bilevel G4 mask of a diamond lattice, 3000 x 942 pixels", make_stent},
+      {"small", "six bilevel layers of 200 x 240 pixels, upright and on their side", make_small},
+      {"formats", "one small picture in every format that is read", make_formats},
+  };
+  return sets;
+}
+
+}  // namespace gravure::samples
