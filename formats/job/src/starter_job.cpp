@@ -47,7 +47,7 @@ files       = ["layers/*.tif"]    # 64 pixels wide, 1968 high: one row a line, o
 fires       = "white"             # the pixels that get a pulse, "white" or "black"; there is no default
 lines_along = "rows"              # "columns": an image column is a line
 order       = "sequence"          # layer r on revolution r; or "cycle", "hold" (repeat the last)
-# revolutions = 3                 # default: one per layer
+# revolutions = 2                 # default: one per layer
 
 [limits]
 seam_um = 0.5                     # how far the end of a revolution may be from the start of the next
