@@ -28,7 +28,7 @@ unsigned eight(const std::uint8_t* src, std::uint64_t limits, std::uint64_t flip
 unsigned eight(const std::uint16_t* src, std::uint64_t limits, std::uint64_t flip) {
   constexpr std::uint64_t kTops = 0x8000800080008000u;
   unsigned bits = 0;
-  for (int half = 0; half < 2; ++half) {
+  for (std::ptrdiff_t half = 0; half < 2; ++half) {
     std::uint64_t x = 0;
     std::memcpy(&x, src + 4 * half, sizeof x);
     if constexpr (std::endian::native == std::endian::big) {
@@ -70,6 +70,22 @@ void integer_row(std::byte* dst, const Sample* src, std::int64_t width, Sample l
   }
 }
 
+/// Eight comparisons without a branch: noisy maps would be guessed wrong at every other sample.
+template <Where kWhere>
+void float_row(std::byte* dst, const float* src, std::int64_t width, float limit) {
+  std::int64_t i = 0;
+  for (; i + 8 <= width; i += 8) {
+    unsigned bits = 0;
+    for (int k = 0; k < 8; ++k) {
+      bits = bits << 1 | static_cast<unsigned>(kWhere == Where::at_least ? src[i + k] >= limit : src[i + k] <= limit);
+    }
+    *dst++ = static_cast<std::byte>(bits);
+  }
+  if (i < width) {
+    *dst = up_to_eight(src + i, width - i, limit, kWhere);
+  }
+}
+
 struct Leaf {
   template <class Sample>
   static void threshold_row(std::byte* dst, const Sample* src, std::int64_t width, Sample limit, Where where) {
@@ -88,9 +104,8 @@ void threshold_row(std::byte* dst, const std::uint16_t* src, std::int64_t width,
 }
 
 void threshold_row(std::byte* dst, const float* src, std::int64_t width, float limit, Where where) {
-  for (std::int64_t i = 0; i < width; i += 8) {
-    *dst++ = up_to_eight(src + i, width - i < 8 ? width - i : 8, limit, where);
-  }
+  where == Where::at_least ? float_row<Where::at_least>(dst, src, width, limit)
+                           : float_row<Where::at_most>(dst, src, width, limit);
 }
 
 void threshold_u8(std::span<std::byte> dst, std::span<const std::uint8_t> src, std::int64_t width, std::int64_t rows,

@@ -126,15 +126,15 @@ GRAVURE_AVX2 inline void transpose_words(std::byte* to, std::int64_t stride, con
 GRAVURE_AVX2 void transpose_block(std::byte* dst, std::int64_t dst_stride, const std::byte* src,
                                   std::int64_t src_stride) {
   alignas(64) __m256i by_bits[kBlock];
-  for (int group = 0; group < 32; ++group) {
+  for (std::int64_t group = 0; group < 32; ++group) {
     transpose_bits(by_bits + 8 * group, src + 8 * group * src_stride, src_stride);
   }
   alignas(64) __m256i by_bytes[32];
-  for (int bit = 0; bit < 8; ++bit) {
-    for (int tile = 0; tile < 4; ++tile) {
+  for (std::int64_t bit = 0; bit < 8; ++bit) {
+    for (std::int64_t tile = 0; tile < 4; ++tile) {
       transpose_bytes(by_bytes + 8 * tile, by_bits + 64 * tile + bit);
     }
-    for (int byte = 0; byte < 8; ++byte) {
+    for (std::int64_t byte = 0; byte < 8; ++byte) {
       transpose_words(dst + (8 * byte + 7 - bit) * dst_stride, dst_stride, by_bytes + byte);
     }
   }
