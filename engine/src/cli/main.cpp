@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 
+#include "motion_command.hpp"
 #include "verb.hpp"
 
 namespace {
@@ -49,6 +50,7 @@ int run(int argc, char** argv) {
   gravure::cli::add_unroll(app, command);
   gravure::cli::add_verify(app, command);
   gravure::cli::add_emulate(app, command);
+  gravure::cli::add_motion_command(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

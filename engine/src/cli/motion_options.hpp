@@ -1,0 +1,56 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gravure/formats/motion_json.hpp"
+#include "gravure/motion/plan_profile.hpp"
+#include "gravure/motion/settling.hpp"
+
+namespace gravure::cli {
+
+/// A move as it stands on the command line.
+struct MoveOptions {
+  double stroke_mm = 0;
+  double v_max = 0;
+  double a_up = 0;
+  std::optional<double> a_down;  ///< as a_up
+  std::optional<double> s_factor;
+  std::optional<double> jerk_up;
+  std::optional<double> jerk_down;  ///< as jerk_up
+  double update_us = 250;
+  double start_velocity = 0;
+  double end_velocity = 0;
+};
+
+/// `required`: stroke, velocity and acceleration have to be there.
+void add_move_options(CLI::App& verb, MoveOptions& options, bool required);
+/// S factor or jerk limits, never both; S factor 0 (the trapezoid) when neither is given.
+Result<motion::Profile> plan_move(const MoveOptions& options);
+
+/// `--mode f_hz,zeta[,p]` as often as there are modes, and the band.
+struct ModeOptions {
+  std::vector<std::string> modes;
+  std::optional<double> band_mm_s2;
+  std::optional<double> band_mm;
+};
+
+void add_mode_options(CLI::App& verb, ModeOptions& options);
+/// Shares of the last mass of a chain where no mode has one; bad_argument where only some do.
+Result<std::vector<motion::Mode>> modes_of(const ModeOptions& options);
+Result<motion::Band> band_of(const ModeOptions& options);
+
+/// Where results go beside standard output; empty for nowhere.
+struct OutputOptions {
+  std::string csv;
+  std::string plot;
+};
+
+void add_output_options(CLI::App& verb, OutputOptions& options);
+/// Writes what was asked for.
+Result<void> write_outputs(const OutputOptions& options, const std::string& csv, const std::string& title,
+                           const std::string& x_name, const std::vector<formats::Curve>& curves);
+
+}  // namespace gravure::cli

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "gravure/core/file_output.hpp"
+#include "gravure/motion/identify.hpp"
+#include "gravure/motion/unreverse.hpp"
+#include "motion_command.hpp"
+#include "motion_options.hpp"
+
+namespace gravure::cli {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+
+struct IdentifyOptions {
+  std::string recording;
+  bool step = false;
+  double start_s = 0;
+  std::uint32_t modes = 0;
+  MoveOptions move;  ///< what excited a run-down; a stroke of 0 for unknown
+  OutputOptions output;
+};
+
+std::string identification_text(const motion::Identification& found) {
+  std::string text = fmt::format("{:>12} {:>10} {:>12} {:>12} {:>14} {:>10}\n", "f Hz", "+-", "zeta", "+-",
+                                 found.participation_is_absolute ? "participation" : "amplitude", "+-");
+  for (const motion::IdentifiedMode& mode : found.modes) {
+    text += fmt::format("{:>12.5f} {:>10.2g} {:>12.6f} {:>12.2g} {:>14.5f} {:>10.2g}\n", mode.mode.f_hz, mode.f_sd_hz,
+                        mode.mode.zeta, mode.zeta_sd, mode.mode.participation, mode.participation_sd);
+  }
+  return text + fmt::format("noise {:.4g} mm/s^2, offset {:.6g} mm/s^2, {} samples\n", found.noise_sd_mm_s2,
+                            found.offset_mm_s2, found.samples);
+}
+
+std::string identification_csv(const motion::Identification& found) {
+  std::string csv = "f_hz,f_sd_hz,zeta,zeta_sd,participation,participation_sd\n";
+  for (const motion::IdentifiedMode& m : found.modes) {
+    csv += fmt::format("{},{},{},{},{},{}\n", m.mode.f_hz, m.f_sd_hz, m.mode.zeta, m.zeta_sd, m.mode.participation,
+                       m.participation_sd);
+  }
+  return csv;
+}
+
+Result<int> run_identify(const IdentifyOptions& options, bool json) {
+  GRAVURE_TRY(const std::string text, read_file(options.recording, kMostBytes));
+  motion::IdentifyRequest request;
+  auto recording = motion::parse_recording_csv(text);
+  if (!recording) {
+    return Error{recording.error().code, options.recording + ": " + recording.error().message};
+  }
+  request.recording = std::move(recording).value();
+  request.of = options.step ? motion::RecordingOf::step : motion::RecordingOf::run_down;
+  request.start_s = options.start_s;
+  request.modes = options.modes;
+  if (options.move.stroke_mm != 0) {
+    GRAVURE_TRY(const motion::Profile profile, plan_move(options.move));
+    request.input = motion::input_of(profile);
+  }
+  const formats::Curve curve{"acceleration mm/s^2", request.recording.time_s, request.recording.acceleration_mm_s2};
+  const auto found = motion::identify(request);
+  if (!found) {
+    return Error{found.error().code, options.recording + ": " + found.error().message};
+  }
+  GRAVURE_CHECK(write_outputs(options.output, identification_csv(found.value()), "Recording", "s", {curve}));
+  print(json ? formats::identification_to_json(found.value()) : identification_text(found.value()));
+  return kDone;
+}
+
+struct UnreverseOptions {
+  std::string program;
+  double tolerance_deg = 0;
+  std::size_t control_points = 16;
+  OutputOptions output;
+};
+
+std::string unreversed_text(const std::vector<formats::UnreversedAxis>& axes) {
+  std::string text;
+  for (const auto& axis : axes) {
+    text += fmt::format("{}: {} of {} reversals kept, {} control points, at most {:.4f} degrees off (rms {:.4f})\n",
+                        axis.name, axis.result.reversals_after, axis.result.reversals_before,
+                        axis.result.control_points, axis.result.largest_deviation, axis.result.rms_deviation);
+  }
+  return text;
+}
+
+Result<int> run_unreverse(const UnreverseOptions& options, bool json) {
+  GRAVURE_TRY(const std::string text, read_file(options.program, kMostBytes));
+  auto read = motion::parse_rotary_program(text);
+  if (!read) {
+    return Error{read.error().code, options.program + ": " + read.error().message};
+  }
+  const motion::RotaryPath path = std::move(read).value();
+  std::vector<double> block(path.line.size());
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    block[k] = static_cast<double>(k);
+  }
+  std::vector<formats::UnreversedAxis> axes;
+  std::vector<formats::Curve> curves;
+  for (const auto& [name, angle] : {std::pair("a", path.a_deg), std::pair("c", motion::unwrapped(path.c_deg, 360))}) {
+    GRAVURE_TRY(motion::Unreversed result,
+                motion::remove_reversals({block, angle, options.tolerance_deg, options.control_points}));
+    curves.push_back({std::string(name) + " degrees", block, result.angle});
+    axes.push_back({name, options.tolerance_deg, std::move(result)});
+  }
+  std::string csv = "line,a_before_deg,a_deg,c_before_deg,c_deg\n";
+  for (std::size_t k = 0; k < block.size() && !options.output.csv.empty(); ++k) {
+    csv += fmt::format("{},{},{},{},{}\n", path.line[k], path.a_deg[k], axes[0].result.angle[k], path.c_deg[k],
+                       axes[1].result.angle[k]);
+  }
+  GRAVURE_CHECK(write_outputs(options.output, csv, "Rotary axes without unintended reversals", "block", curves));
+  print(json ? formats::unreversed_to_json(axes) : unreversed_text(axes));
+  return kDone;
+}
+
+}  // namespace
+
+void add_motion_identify(CLI::App& motion, Command& command) {
+  CLI::App* verb = add_verb(motion, command, "identify", "Modes from a recording of acceleration over time");
+  const auto options = std::make_shared<IdentifyOptions>();
+  verb->add_option("RECORDING", options->recording, "CSV: time in s, acceleration in mm/s^2")->required();
+  verb->add_flag("--step", options->step,
+                 "The axis starts to accelerate evenly at --start-s (else it rings down from there)");
+  verb->add_option("--start-s", options->start_s, "Samples before are not used")->capture_default_str();
+  verb->add_option("--modes", options->modes, "How many, 1 to 4; 0 lets the data choose")->capture_default_str();
+  add_move_options(*verb, options->move, false);
+  add_output_options(*verb, options->output);
+  verb->callback(
+      [&command, options] { command.run = [&command, options] { return run_identify(*options, command.json); }; });
+}
+
+void add_motion_unreverse(CLI::App& motion, Command& command) {
+  CLI::App* verb =
+      add_verb(motion, command, "unreverse", "Remove unintended reversals of the rotary axes of a program");
+  const auto options = std::make_shared<UnreverseOptions>();
+  verb->add_option("PROGRAM", options->program, "G-code with A and C words in degrees")->required();
+  verb->add_option("--tolerance-deg", options->tolerance_deg, "Reversals up to this go; no block moves by more")
+      ->required();
+  verb->add_option("--control-points", options->control_points, "Of each piece to begin with")->capture_default_str();
+  add_output_options(*verb, options->output);
+  verb->callback(
+      [&command, options] { command.run = [&command, options] { return run_unreverse(*options, command.json); }; });
+}
+
+}  // namespace gravure::cli
