@@ -25,7 +25,8 @@ Error not_decimal(std::string_view text) {
 }  // namespace
 
 Rational ratio(const Integer& num, const Integer& den) {
-  return Rational(num, den);
+  // Boost 1.74 refuses negative denominators of unbounded integers with an exception.
+  return den < 0 ? Rational(Integer(-num), Integer(-den)) : Rational(num, den);
 }
 
 Integer floor_of(const Rational& value) {
@@ -61,14 +62,35 @@ double to_double(const Integer& value) {
   return negative ? -result : result;
 }
 
+namespace {
+
+/// num/den below about 2^min_exponent: rounded once, to a whole number of the smallest steps a double has.
+double subnormal(const Integer& num, const Integer& den) {
+  constexpr int kSmallestStep = std::numeric_limits<double>::min_exponent - std::numeric_limits<double>::digits;
+  Integer steps;
+  Integer remainder;
+  divide_qr(Integer(num << static_cast<unsigned>(-kSmallestStep)), den, steps, remainder);
+  const Integer twice = 2 * remainder;
+  if (twice > den || (twice == den && bit_test(steps, 0))) {
+    ++steps;
+  }
+  return std::ldexp(static_cast<double>(static_cast<std::uint64_t>(steps)), kSmallestStep);
+}
+
+}  // namespace
+
 double to_double(const Rational& value) {
   const Integer num = abs(numerator_of(value));
   if (num == 0) {
     return 0.0;
   }
-  const Integer& den = denominator_of(value);
+  const Integer den = denominator_of(value);
+  const long exponent = static_cast<long>(msb(num)) - static_cast<long>(msb(den));
+  if (exponent < std::numeric_limits<double>::min_exponent) {
+    return value < 0 ? -subnormal(num, den) : subnormal(num, den);
+  }
   // Scale so that the quotient has at least 64 significant bits, divide exactly, keep a sticky bit.
-  const long scale = 66 + static_cast<long>(msb(den)) - static_cast<long>(msb(num));
+  const long scale = 66 - exponent;
   const Integer scaled_num = scale > 0 ? Integer(num << static_cast<unsigned long>(scale)) : num;
   const Integer scaled_den = scale < 0 ? Integer(den << static_cast<unsigned long>(-scale)) : den;
   Integer quotient;
@@ -158,9 +180,12 @@ Result<Rational> parse_decimal(std::string_view text) {
       return not_decimal(text);
     }
     const int given = std::atoi(exponent_digits.c_str());
+    if (given > kMaxExponent) {
+      return not_decimal(text);
+    }
     exponent += exponent_negative ? -given : given;
   }
-  if (at != text.size() || digits.size() > kMaxDigits || exponent > kMaxExponent || exponent < -kMaxExponent) {
+  if (at != text.size() || digits.size() > kMaxDigits) {
     return not_decimal(text);
   }
   // A leading 0 would make the digits octal.

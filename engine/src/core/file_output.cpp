@@ -4,8 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -94,18 +94,23 @@ Result<FileOutput> FileOutput::create(const std::string& path) {
   }
   // Renaming onto a device or pipe would replace it, not write to it.
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
-    return Error{ErrorCode::io, "output \"" + path + "\" is not a regular file: it cannot appear whole; give a file name"};
+    return Error{ErrorCode::io,
+                 "output \"" + path + "\" is not a regular file: it cannot appear whole; give a file name"};
   }
-  std::string temporary = path + ".part-XXXXXX";
-  const Descriptor file(::mkostemp(temporary.data(), O_CLOEXEC));
-  if (!file.valid()) {
-    return system_error("cannot create the output", path);
+  // Created as any new file is, so that the umask and the folder's own rules hold; O_EXCL keeps the name ours.
+  static std::atomic<unsigned> counter{0};
+  constexpr int kMostTries = 1000;  // names left behind by a crash are passed over
+  for (int tries = 0; tries < kMostTries; ++tries) {
+    std::string temporary = path + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
+    const Descriptor file(::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.valid()) {
+      return FileOutput(path, std::move(temporary));
+    }
+    if (errno != EEXIST) {
+      return system_error("cannot create the output", path);
+    }
   }
-  // mkostemp gives 0600; the result is to have what any new file would have.
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  static_cast<void>(::fchmod(file.get(), 0666 & ~mask));
-  return FileOutput(path, std::move(temporary));
+  return system_error("cannot find a free temporary name beside the output", path);
 }
 
 Result<void> FileOutput::commit() {

@@ -23,7 +23,7 @@ inline Integer denominator_of(const Rational& value) {
   return boost::multiprecision::denominator(value);
 }
 
-/// num/den in lowest terms; den must not be 0.
+/// num/den in lowest terms; den of either sign, not 0 (Boost 1.74's own constructor throws where it is negative).
 Rational ratio(const Integer& num, const Integer& den);
 
 Integer floor_of(const Rational& value);
