@@ -39,7 +39,10 @@ class TaskList {
   TaskList(const LayerStack& stack, const Geometry& geometry, std::int64_t lines_per_pass)
       : geometry_(geometry), depth_map_(stack.levels > 0) {
     const std::int64_t all = geometry.chunks_per_layer();
-    group_ = depth_map_ ? 1 : std::clamp<std::int64_t>(lines_per_pass / geometry.lines_per_chunk, 1, all);
+    // A panel starts at a whole byte, up to 7 lines before the first one asked for.
+    const std::int64_t fit = stack.lines_along == LinesAlong::columns ? lines_per_pass - 7 : lines_per_pass;
+    group_ = lines_per_pass >= geometry.lines ? all : std::clamp<std::int64_t>(fit / geometry.lines_per_chunk, 1, all);
+    group_ = depth_map_ ? 1 : group_;
     groups_ = (all + group_ - 1) / group_;
   }
   std::int64_t size() const { return depth_map_ ? groups_ : groups_ * geometry_.layers; }

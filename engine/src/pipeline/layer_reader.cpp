@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "gravure/raster/threshold.hpp"
 #include "gravure/raster/transpose.hpp"
@@ -44,6 +45,23 @@ void transpose_samples(std::byte* dst, std::int64_t dst_stride, const std::byte*
   }
 }
 
+/// The float that cuts where the exact limit does: the first one not below it (at_least) or not above it (at_most).
+float float_limit(const Rational& exact, raster::Where where) {
+  const double nearest = to_double(exact);
+  constexpr double kMost = std::numeric_limits<float>::max();
+  const bool up = where == raster::Where::at_least;
+  if (std::fabs(nearest) > kMost) {
+    const float most = std::copysign(std::numeric_limits<float>::max(), static_cast<float>(nearest > 0 ? 1 : -1));
+    return up == (nearest > 0) ? std::copysign(std::numeric_limits<float>::infinity(), most) : most;
+  }
+  const auto limit = static_cast<float>(nearest);
+  const Rational given(static_cast<double>(limit));
+  if (up ? given < exact : given > exact) {
+    return std::nextafter(limit, std::copysign(std::numeric_limits<float>::infinity(), up ? 1.0F : -1.0F));
+  }
+  return limit;
+}
+
 template <class T>
 std::span<const T> samples_as(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
@@ -82,16 +100,21 @@ Result<void> LayerReader::select(const LayerInput& input) {
   source_ = std::move(opened);
   path_ = input.path;
   page_ = input.page;
+  next_row_ = 0;
   return {};
 }
 
 Result<void> LayerReader::read_rows(std::int64_t first_row, std::int64_t count, std::span<std::byte> out) {
+  if (!source_->info().random_access && first_row < next_row_) {  // such a file only runs upwards: start it again
+    GRAVURE_TRY(source_, opener_.open(path_, page_));
+  }
+  next_row_ = first_row + count;
   return source_->read_rows(first_row, count,
                             out.first(size(count * row_bytes(stack_.samples, source_->info().width))));
 }
 
 Result<void> LayerReader::load_panel(std::int64_t first_line) {
-  const std::int64_t first = first_line / panel_lines_ * panel_lines_;
+  const std::int64_t first = first_line / 8 * 8;  // whole bytes; from where the caller reads on, so that it fits a pass
   const std::int64_t count = std::min(panel_lines_, stack_.lines - first);
   const std::int64_t rows = stack_.pixels;
   const std::int64_t image_row = row_bytes(stack_.samples, stack_.lines);
@@ -166,7 +189,8 @@ Result<LayerReader::Limit> LayerReader::limit_of(const LayerInput& input) const 
       return Error{ErrorCode::out_of_range, "image.threshold = " + std::to_string(limit) + ": samples go from 0 to " +
                                                 std::to_string(integer_maximum(stack_.samples))};
     }
-    return Limit{static_cast<double>(limit), raster::Where::at_least};
+    return Limit{integers ? static_cast<double>(limit) : float_limit(Rational(limit), raster::Where::at_least),
+                 raster::Where::at_least};
   }
   const bool integers = stack_.samples != SampleType::f32;
   Rational low = stack_.depth_min.value_or(0);
@@ -180,7 +204,8 @@ Result<LayerReader::Limit> LayerReader::limit_of(const LayerInput& input) const 
   }
   if (!integers) {
     const Rational at = low + (high - low) * Rational(2 * input.level + 1, 2 * stack_.levels);
-    return Limit{to_double(at), low < high ? raster::Where::at_least : raster::Where::at_most};
+    const raster::Where where = low < high ? raster::Where::at_least : raster::Where::at_most;
+    return Limit{float_limit(at, where), where};
   }
   for (const Rational& end : {low, high}) {
     if (denominator_of(end) != 1 || end < 0 || end > integer_maximum(stack_.samples)) {

@@ -68,6 +68,7 @@ class LayerReader final : public LayerLines {
   std::unique_ptr<ImageSource> source_;
   std::string path_;
   std::int64_t page_ = -1;
+  std::int64_t next_row_ = 0;  ///< what a file that only runs upwards has not given yet
   // The lines kept: a block of sample rows, or a panel of columns already turned into lines.
   std::vector<std::byte> held_;
   std::int64_t held_first_ = 0;

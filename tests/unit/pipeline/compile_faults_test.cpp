@@ -1,0 +1,124 @@
+#include <optional>
+
+#include "pipeline_support.hpp"
+
+namespace gravure::test {
+namespace {
+
+constexpr int kThreadCounts[] = {1, 2, 5};
+
+struct Faults {
+  std::optional<std::int64_t> put = std::nullopt;
+  std::optional<std::int64_t> encode = std::nullopt;
+  CancelToken* cancel = nullptr;
+  Progress* progress = nullptr;
+};
+
+/// Compiles with the fault; the error must come back, and nothing be finished.
+Error failing(const LayerStack& stack, const MemoryImages& images, int threads, const Faults& faults) {
+  MemoryProgram program;
+  program.lines_per_chunk = 3;
+  MemorySink sink(program);
+  sink.fail_at_put = faults.put;
+  sink.fail_at_encode = faults.encode;
+  const Result<ProgramHeader> result =
+      compile(header_for(stack, true), stack, images, sink,
+              {.threads = threads, .cancel = faults.cancel, .progress = faults.progress});
+  EXPECT_FALSE(result);
+  EXPECT_EQ(program.finished, 0) << "nothing may be finished after a fault";
+  return result ? Error{ErrorCode::bad_argument, "it succeeded"} : result.error();
+}
+
+TEST(CompileFault, OfTheReaderTravels) {
+  for (const int threads : kThreadCounts) {
+    for (const LinesAlong along : {LinesAlong::rows, LinesAlong::columns}) {
+      MemoryImages images;
+      const LayerStack stack = random_stack(images, SampleType::bit, along, 60, 40, 4, 1);
+      images.at("layer2").damaged_row = 31;
+      const Error error = failing(stack, images, threads, {});
+      EXPECT_EQ(error.code, ErrorCode::bad_file);
+      EXPECT_EQ(error.message, "layer2: row 31 is damaged");
+    }
+  }
+}
+
+TEST(CompileFault, OfTheSinkTravels) {
+  for (const int threads : kThreadCounts) {
+    MemoryImages images;
+    const LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::rows, 60, 40, 4, 1);
+    for (const std::int64_t at : {0, 37, 79}) {  // the first, the middle, the last chunk
+      const Error put = failing(stack, images, threads, {.put = at});
+      EXPECT_EQ(put.code, ErrorCode::io);
+      EXPECT_EQ(put.message, "the disk is full here");
+      EXPECT_EQ(failing(stack, images, threads, {.encode = at}).message, "the packer fails here");
+    }
+  }
+}
+
+TEST(CompileFault, OfAnImageThatIsGoneOrChangedNamesIt) {
+  for (const int threads : kThreadCounts) {
+    MemoryImages images;
+    LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::rows, 60, 40, 3, 1);
+    images.at("layer1").info.height = 59;
+    EXPECT_EQ(failing(stack, images, threads, {}).code, ErrorCode::bad_file);
+    EXPECT_NE(failing(stack, images, threads, {}).message.find("layer1: page 0 changed"), std::string::npos);
+    stack.layers[1].path = "gone";
+    EXPECT_NE(failing(stack, images, threads, {}).message.find("gone"), std::string::npos);
+  }
+}
+
+TEST(CompileFault, CancelledBeforeItStartsNothingIsWritten) {
+  for (const int threads : kThreadCounts) {
+    MemoryImages images;
+    const LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::rows, 60, 40, 4, 1);
+    CancelToken cancel;
+    cancel.cancel();
+    EXPECT_EQ(failing(stack, images, threads, {.cancel = &cancel}).code, ErrorCode::cancelled);
+    EXPECT_EQ(images.rows_read(), 0);
+  }
+}
+
+/// Pulls the brake after some lines.
+class CancelAt final : public Progress {
+ public:
+  CancelAt(CancelToken& token, std::int64_t lines) : token_(token), lines_(lines) {}
+  void update(std::int64_t done, std::int64_t) override {
+    if (done >= lines_) {
+      token_.cancel();
+    }
+  }
+
+ private:
+  CancelToken& token_;
+  std::int64_t lines_;
+};
+
+TEST(CompileFault, CancelledInTheMiddleItStopsSoon) {
+  for (const int threads : kThreadCounts) {
+    MemoryImages images;
+    const LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::rows, 600, 40, 4, 1);
+    CancelToken cancel;
+    CancelAt brake(cancel, 100);
+    EXPECT_EQ(failing(stack, images, threads, {.cancel = &cancel, .progress = &brake}).code, ErrorCode::cancelled);
+    EXPECT_LT(images.rows_read(), 100 + 3 * (2 * threads + 1)) << "at most the chunk in hand is still read";
+  }
+}
+
+TEST(CompileFault, ABudgetTooSmallNamesTheNeed) {
+  for (const LinesAlong along : {LinesAlong::rows, LinesAlong::columns}) {
+    MemoryImages images;
+    const LayerStack stack = random_stack(images, SampleType::u16, along, 1000, 100'000, 1, 1);
+    const std::int64_t least = least_compile_memory(stack, 64);
+    const Compiled compiled =
+        compile_stack(header_for(stack, true), stack, images, 64, {.memory_bytes = least - 1, .threads = 2});
+    ASSERT_FALSE(compiled.result);
+    EXPECT_EQ(compiled.result.error().code, ErrorCode::out_of_range);
+    const std::string need = std::to_string((least + (1 << 20) - 1) >> 20) + " MiB";
+    EXPECT_NE(compiled.result.error().message.find("at least " + need), std::string::npos)
+        << compiled.result.error().message;
+    EXPECT_EQ(images.opened(), 0) << "refused before anything is read";
+  }
+}
+
+}  // namespace
+}  // namespace gravure::test
