@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstring>
 #include <mutex>
 #include <thread>
-#include <tuple>
 
 #include "axis_check.hpp"
 #include "gravure/raster/count.hpp"
-#include "gravure/raster/place.hpp"
+#include "judge.hpp"
+#include "tally.hpp"
 
 namespace gravure {
 namespace {
@@ -18,75 +17,6 @@ namespace {
 std::size_t size(std::int64_t bytes) {
   return static_cast<std::size_t>(bytes);
 }
-
-std::string place(const Plan& plan, std::int64_t ordinal) {
-  return "revolution " + std::to_string(ordinal / plan.rotary.lines_per_revolution) + ", line " +
-         std::to_string(ordinal % plan.rotary.lines_per_revolution);
-}
-
-/// The first of its kind, by place in the job, so that the report does not depend on the number of workers.
-struct Finding {
-  std::int64_t count = 0;
-  std::int64_t ordinal = -1;
-  std::string detail;
-
-  void add(std::int64_t at, std::string what, std::int64_t how_many = 1) {
-    if (ordinal < 0 || at < ordinal) {
-      ordinal = at;
-      detail = std::move(what);
-    }
-    count += how_many;
-  }
-  void merge(const Finding& other) {
-    if (other.count > 0) {
-      add(other.ordinal, other.detail, other.count);
-    }
-  }
-};
-
-/// What one worker has seen; merged into one.
-struct Tally {
-  std::int64_t lines = 0;
-  std::int64_t fired = 0;
-  std::int64_t wrong_pixels = 0;
-  std::int64_t first_wrong_ordinal = -1;
-  std::int64_t first_wrong_column = -1;
-  double worst_edges = 0;  ///< with sign
-  std::int64_t worst_ordinal = -1;
-  std::int64_t end_tick = 0;
-  Finding refused;
-  Finding misplaced;
-  Finding off_axis;
-
-  void see_axis(double edges, std::int64_t ordinal) {
-    if (worst_ordinal < 0 || std::fabs(edges) > std::fabs(worst_edges) ||
-        (std::fabs(edges) == std::fabs(worst_edges) && ordinal < worst_ordinal)) {
-      worst_edges = edges;
-      worst_ordinal = ordinal;
-    }
-  }
-  void see_wrong(std::int64_t ordinal, std::int64_t column) {
-    if (first_wrong_ordinal < 0 || std::tie(ordinal, column) < std::tie(first_wrong_ordinal, first_wrong_column)) {
-      first_wrong_ordinal = ordinal;
-      first_wrong_column = column;
-    }
-  }
-  void merge(const Tally& other) {
-    lines += other.lines;
-    fired += other.fired;
-    wrong_pixels += other.wrong_pixels;
-    end_tick = std::max(end_tick, other.end_tick);
-    if (other.first_wrong_ordinal >= 0) {
-      see_wrong(other.first_wrong_ordinal, other.first_wrong_column);
-    }
-    if (other.worst_ordinal >= 0) {
-      see_axis(other.worst_edges, other.worst_ordinal);
-    }
-    refused.merge(other.refused);
-    misplaced.merge(other.misplaced);
-    off_axis.merge(other.off_axis);
-  }
-};
 
 /// The layers cut from one source image, and the revolutions that expose each.
 struct Group {
@@ -196,14 +126,10 @@ class Verifier::Worker final : public PinObserver {
     tally_.fired += raster::popcount(line.fired);
     const std::int64_t ordinal = first_ordinal_ + landing_.lines();
     const bool in_time = line.ordinal == ordinal && line.start_tick == ordinal * plan_.line.ticks;
-    const double edges = parent_.axis_.error_edges(line.ordinal, line.axis_at_start);
-    tally_.see_axis(edges, line.ordinal);
-    // Beside its drift the axis may be late by the step it is about to make: one edge, and with a prescaler one more.
-    const double drift_edges = to_double_drift(line.ordinal);
-    if (edges > drift_edges + kRounding || edges < drift_edges - 2.0 - kRounding) {
-      tally_.off_axis.add(line.ordinal, std::to_string(edges) +
-                                            " A-B edges from where it should be, the drift explains " +
-                                            std::to_string(drift_edges));
+    tally_.see_axis(parent_.axis_.error_edges(line.ordinal, line.axis_at_start), line.ordinal);
+    const std::uint64_t expected = parent_.axis_.register_edges(line.start_tick);
+    if (line.axis_at_start.edges != expected) {
+      tally_.off_axis.add(line.ordinal, edges_text(line.axis_at_start.edges, expected));
     }
     const std::int64_t lost_from = parent_.axis_.first_misplaced_line();
     if (lost_from >= 0 && line.ordinal >= lost_from) {
@@ -235,10 +161,6 @@ class Verifier::Worker final : public PinObserver {
   const Tally& tally() const { return tally_; }
 
  private:
-  static constexpr double kRounding = 1e-6;  // edges; far above double's error here, far below anything that shows
-
-  double to_double_drift(std::int64_t ordinal) const { return drift_per_line_edges_ * static_cast<double>(ordinal); }
-
   Result<void> load_image(std::int64_t layer) {
     if (!images_) {
       return {};
@@ -255,13 +177,29 @@ class Verifier::Worker final : public PinObserver {
     if (sent) {
       sent = chunk_.send(header_, revolution, *device_);
     }
-    tally_.end_tick = std::max(tally_.end_tick, device_->status().tick);
+    see_end();
     if (!sent) {
       tally_.refused.add(first_ordinal_ + landing_.lines(), sent.error().message);
       device_ = parent_.devices_(*this);  // the fault is sticky: go on with a fresh one to see what else is wrong
     }
     if (images_) {
       compare(revolution);
+    }
+  }
+
+  /// What the device says of itself between two chunks: the time, and where the axis stands.
+  void see_end() {
+    const DeviceStatus status = device_->status();
+    tally_.end_tick = std::max(tally_.end_tick, status.tick);
+    const std::int64_t end_ordinal = first_ordinal_ + chunk_.lines();
+    if (status.tick != end_ordinal * plan_.line.ticks) {
+      return;  // refused or lost lines are said elsewhere
+    }
+    if (const std::uint64_t expected = parent_.axis_.register_edges(status.tick); status.axis.edges != expected) {
+      tally_.off_axis.add(end_ordinal - 1, "at its end " + edges_text(status.axis.edges, expected));
+    }
+    if (status.tick == plan_.job.ticks) {
+      tally_.end_edges = status.axis.edges;
     }
   }
 
@@ -298,8 +236,6 @@ class Verifier::Worker final : public PinObserver {
   std::vector<std::byte> image_;
   bool invert_ = false;
   std::int64_t first_ordinal_ = 0;
-  const double drift_per_line_edges_ = to_double(
-      Rational(parent_.axis_.drift_per_line() * plan_.rotary.edges_per_revolution / plan_.rotary.lines_per_revolution));
   std::unique_ptr<DeviceLink> device_;
 };
 
@@ -328,54 +264,15 @@ void Verifier::work(const std::function<Result<std::unique_ptr<LineSource>>()>& 
   tally_.merge(worker.tally());
 }
 
-/// The seam after every revolution: the drift of the registers the device ran with, exact.
-void fill_seam(const Plan& plan, const AxisCheck& axis, VerifyReport& report) {
-  const Rational per_revolution = axis.drift_per_line() * plan.rotary.lines_per_revolution;
-  report.seam.reserve(size(report.revolutions));
-  for (std::int64_t r = 0; r < report.revolutions; ++r) {
-    SeamRow row;
-    row.revolution = r;
-    row.drift_lines = per_revolution * (r + 1);
-    row.drift_um = to_double(Rational(row.drift_lines * plan.rotary.line_pitch_um));
-    report.seam.push_back(std::move(row));
+/// What the workers take for granted; a reader of files has checked it, another source may not have.
+Result<void> check_header(const ProgramHeader& header) {
+  const bool fits = header.layer_of_revolution.size() == size(header.plan.job.revolutions) &&
+                    std::all_of(header.layer_of_revolution.begin(), header.layer_of_revolution.end(),
+                                [&](std::uint32_t layer) { return layer < header.layers.size(); });
+  if (!fits || header.plan.rotary.lines_per_revolution < 1 || header.plan.line.pixels < 1) {
+    return Error{ErrorCode::bad_file, "the program's header names revolutions, layers or lines it does not have"};
   }
-  // It grows line by line, so the end of the last line is the worst place.
-  report.seam_end_um = report.seam.empty() ? 0.0 : report.seam.back().drift_um;
-  report.seam_max_um = std::fabs(report.seam_end_um);
-  report.seam_worst_revolution = std::max<std::int64_t>(0, report.revolutions - 1);
-  report.seam_worst_line = plan.rotary.lines_per_revolution - 1;
-  report.seam_limit_um = to_double(plan.ab.seam_limit_um);
-}
-
-void judge(const Plan& plan, const AxisCheck& axis, const Tally& tally, VerifyReport& report) {
-  const auto say = [&](const std::string& what) { report.violations.push_back(what); };
-  if (tally.refused.count > 0) {
-    say("the device refused " + place(plan, tally.refused.ordinal) + ": " + tally.refused.detail);
-  }
-  const std::int64_t lines = plan.job.revolutions * plan.rotary.lines_per_revolution;
-  if (tally.lines != lines) {
-    say(std::to_string(lines - tally.lines) + " of " + std::to_string(lines) + " lines were never executed");
-  }
-  if (tally.misplaced.count > 0) {
-    say(std::to_string(tally.misplaced.count) + " lines in the wrong place, the first at " +
-        place(plan, tally.misplaced.ordinal) + ": " + tally.misplaced.detail);
-  }
-  if (tally.off_axis.count > 0) {
-    say("the axis stands wrong at " + std::to_string(tally.off_axis.count) + " line starts, the first at " +
-        place(plan, tally.off_axis.ordinal) + ": " + tally.off_axis.detail);
-  }
-  if (!report.images_compared) {
-    say("the images were not found, so nothing proves that the program shows them: give --images DIR");
-  } else if (report.wrong_pixels > 0) {
-    say(std::to_string(report.wrong_pixels) + " landed pixels differ from the images, the first at " +
-        place(plan, tally.first_wrong_ordinal) + ", column " + std::to_string(tally.first_wrong_column));
-  }
-  const Rational limit_lines = plan.ab.seam_limit_um / plan.rotary.line_pitch_um;
-  if (abs(Rational(axis.drift_per_line() * lines)) > limit_lines) {
-    say("seam error of " + std::to_string(report.seam_max_um) +
-        " um at the end of the job exceeds limits.seam_um = " + to_decimal_string(plan.ab.seam_limit_um) +
-        ": set fpga.fractional, raise scanner.max_extra_slots, or see `gravure suggest`");
-  }
+  return {};
 }
 
 }  // namespace
@@ -386,32 +283,12 @@ Result<VerifyReport> verify(const std::function<Result<std::unique_ptr<LineSourc
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, programs());
   const ProgramHeader& header = program->header();
   const Plan& plan = header.plan;
+  GRAVURE_CHECK(check_header(header));
   GRAVURE_TRY(const AxisCheck axis, AxisCheck::make(plan));
   Verifier verifier(header, program->lines_per_chunk(), axis, devices, options);
   GRAVURE_TRY(const Tally tally, verifier.run(programs, images));
 
-  VerifyReport report;
-  report.revolutions = plan.job.revolutions;
-  report.lines = tally.lines;
-  report.fired_pixels = tally.fired;
-  report.pixels = plan.job.revolutions * plan.rotary.lines_per_revolution * plan.line.pixels;
-  report.images_compared = static_cast<bool>(images);
-  report.wrong_pixels = tally.wrong_pixels;
-  if (tally.first_wrong_ordinal >= 0) {
-    report.first_wrong_pixel =
-        PixelPlace{tally.first_wrong_ordinal / plan.rotary.lines_per_revolution,
-                   tally.first_wrong_ordinal % plan.rotary.lines_per_revolution, tally.first_wrong_column};
-  }
-  report.ticks = tally.end_tick;
-  report.ab_step_um = axis.step_um();
-  if (tally.worst_ordinal >= 0) {
-    report.axis_error_max_um = std::fabs(tally.worst_edges) * axis.step_um();
-    report.axis_worst_revolution = tally.worst_ordinal / plan.rotary.lines_per_revolution;
-    report.axis_worst_line = tally.worst_ordinal % plan.rotary.lines_per_revolution;
-  }
-  fill_seam(plan, axis, report);
-  judge(plan, axis, tally, report);
-  return report;
+  return judge(plan, axis, tally, static_cast<bool>(images));
 }
 
 }  // namespace gravure

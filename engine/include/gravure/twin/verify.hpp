@@ -39,6 +39,9 @@ struct VerifyReport {
   std::int64_t seam_worst_line = 0;
   double seam_end_um = 0;  ///< accumulated over the job, with sign
   double seam_limit_um = 0;
+  /// The same end as the device tells it after the last line: its edges against the ideal turning, at most the lag of
+  /// one step away from seam_end_um. None if no device came to the end of the job.
+  std::optional<double> seam_end_measured_um;
 
   /// The axis at the line starts as the A-B edges put it, against the ideal turning: drift and whole steps together.
   double axis_error_max_um = 0;

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "axis_check.hpp"
+#include "gravure/twin/verify.hpp"
+#include "tally.hpp"
+
+namespace gravure {
+
+/// The report on everything seen, with its violations.
+VerifyReport judge(const Plan& plan, const AxisCheck& axis, const Tally& tally, bool images_compared);
+
+}  // namespace gravure

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "gravure/core/plan.hpp"
+
+namespace gravure {
+
+inline std::string place(const Plan& plan, std::int64_t ordinal) {
+  return "revolution " + std::to_string(ordinal / plan.rotary.lines_per_revolution) + ", line " +
+         std::to_string(ordinal % plan.rotary.lines_per_revolution);
+}
+
+inline std::string edges_text(std::uint64_t edges, std::uint64_t expected) {
+  return std::to_string(edges) + " A-B edges since the start of the job, the program's registers give " +
+         std::to_string(expected);
+}
+
+/// The first of its kind, by place in the job, so that the report does not depend on the number of workers.
+struct Finding {
+  std::int64_t count = 0;
+  std::int64_t ordinal = -1;
+  std::string detail;
+
+  void add(std::int64_t at, std::string what, std::int64_t how_many = 1) {
+    if (ordinal < 0 || at < ordinal) {
+      ordinal = at;
+      detail = std::move(what);
+    }
+    count += how_many;
+  }
+  void merge(const Finding& other) {
+    if (other.count > 0) {
+      add(other.ordinal, other.detail, other.count);
+    }
+  }
+};
+
+/// What one worker has seen; merged into one.
+struct Tally {
+  std::int64_t lines = 0;
+  std::int64_t fired = 0;
+  std::int64_t wrong_pixels = 0;
+  std::int64_t first_wrong_ordinal = -1;
+  std::int64_t first_wrong_column = -1;
+  double worst_edges = 0;  ///< with sign
+  std::int64_t worst_ordinal = -1;
+  std::int64_t end_tick = 0;
+  std::optional<std::uint64_t> end_edges;  ///< where the device says the axis stands at the end of the job
+  Finding refused;
+  Finding misplaced;
+  Finding off_axis;
+
+  void see_axis(double edges, std::int64_t ordinal) {
+    if (worst_ordinal < 0 || std::fabs(edges) > std::fabs(worst_edges) ||
+        (std::fabs(edges) == std::fabs(worst_edges) && ordinal < worst_ordinal)) {
+      worst_edges = edges;
+      worst_ordinal = ordinal;
+    }
+  }
+  void see_wrong(std::int64_t ordinal, std::int64_t column) {
+    if (first_wrong_ordinal < 0 || std::tie(ordinal, column) < std::tie(first_wrong_ordinal, first_wrong_column)) {
+      first_wrong_ordinal = ordinal;
+      first_wrong_column = column;
+    }
+  }
+  void merge(const Tally& other) {
+    lines += other.lines;
+    fired += other.fired;
+    wrong_pixels += other.wrong_pixels;
+    end_tick = std::max(end_tick, other.end_tick);
+    end_edges = other.end_edges ? other.end_edges : end_edges;
+    if (other.first_wrong_ordinal >= 0) {
+      see_wrong(other.first_wrong_ordinal, other.first_wrong_column);
+    }
+    if (other.worst_ordinal >= 0) {
+      see_axis(other.worst_edges, other.worst_ordinal);
+    }
+    refused.merge(other.refused);
+    misplaced.merge(other.misplaced);
+    off_axis.merge(other.off_axis);
+  }
+};
+
+}  // namespace gravure
