@@ -24,29 +24,26 @@ bool Hdf5Channel::read(std::uint64_t offset, void* buffer, std::size_t bytes) no
   return true;
 }
 
-bool Hdf5Channel::write(std::uint64_t offset, const void* buffer, std::size_t bytes) noexcept {
+void Hdf5Channel::write(std::uint64_t offset, const void* buffer, std::size_t bytes) noexcept {
   if (buffer == watched_) {
     watched_offset_ = offset;
   }
-  if (abandoned_) {
-    return true;
+  if (!abandoned_) {
+    settle(file_->write(offset, {static_cast<const std::byte*>(buffer), bytes}));
   }
-  auto done = file_->write(offset, {static_cast<const std::byte*>(buffer), bytes});
-  if (!done && !failure_) {
-    failure_ = done.error();
-  }
-  return static_cast<bool>(done);
 }
 
-bool Hdf5Channel::resize(std::uint64_t bytes) noexcept {
-  if (abandoned_) {
-    return true;
+void Hdf5Channel::resize(std::uint64_t bytes) noexcept {
+  if (!abandoned_) {
+    settle(file_->resize(bytes));
   }
-  auto done = file_->resize(bytes);
-  if (!done && !failure_) {
+}
+
+void Hdf5Channel::settle(Result<void> done) noexcept {
+  if (!done) {
     failure_ = done.error();
+    abandoned_ = true;
   }
-  return static_cast<bool>(done);
 }
 
 namespace {
@@ -120,9 +117,10 @@ herr_t driver_read(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_
 
 herr_t driver_write(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t bytes,
                     const void* buffer) {
-  if (!inside(address, bytes) || !opened(file).channel->write(address, buffer, bytes)) {
+  if (!inside(address, bytes)) {
     return -1;
   }
+  opened(file).channel->write(address, buffer, bytes);
   opened(file).end_of_file = std::max<haddr_t>(opened(file).end_of_file, address + bytes);
   return 0;
 }
@@ -130,9 +128,7 @@ herr_t driver_write(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr
 herr_t driver_truncate(H5FD_t* file, hid_t /*transfer*/, hbool_t /*closing*/) {
   OpenFile& open = opened(file);
   if (open.end_of_allocation != open.end_of_file) {
-    if (!open.channel->resize(open.end_of_allocation)) {
-      return -1;
-    }
+    open.channel->resize(open.end_of_allocation);
     open.end_of_file = open.end_of_allocation;
   }
   return 0;

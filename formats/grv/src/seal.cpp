@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kMagic = "gravure program\n";
 constexpr std::size_t kOwnHashAt = Seal::kBytes - 8;  // magic, version and this stay in place in every version
-constexpr std::size_t kReadBytes = std::size_t{1} << 18;
+constexpr std::size_t kReadBytes = std::size_t{1} << 15;
 
 void put_integer(std::byte* at, std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) {

@@ -201,7 +201,7 @@ Result<void> GrvSink::check_chunk(const StoredChunk& chunk) const {
 
 /// Prefers what the operating system said to what HDF5 made of it, closes the file and removes it.
 Error GrvSink::fail(const Error& error) {
-  const Error told = channel_->failure().value_or(Error{error.code, output_.path() + ": " + error.message});
+  Error told = channel_->failure().value_or(Error{error.code, output_.path() + ": " + error.message});
   give_up();
   return told;
 }
@@ -220,7 +220,8 @@ Result<void> GrvSink::put(const StoredChunk& chunk) {
                                         static_cast<hsize_t>(layout_.first_line(chunk.address.chunk)), 0};
   channel_->watch(chunk.bytes.data());
   if (H5Dwrite_chunk(program_.bits.get(), H5P_DEFAULT, chunk.filter_mask, place.data(), chunk.bytes.size(),
-                     chunk.bytes.data()) < 0) {
+                     chunk.bytes.data()) < 0 ||
+      channel_->failure()) {
     return fail(write_failure(layout_.describe(chunk.address)));
   }
   const std::optional<std::uint64_t> offset = channel_->watched_offset();
@@ -279,7 +280,7 @@ Result<void> GrvSink::write_all(const ProgramHeader& header) {
   closing.stored_table.reset();
   closing.offset_table.reset();
   closing.layers.reset();
-  if (!closing.file.reset()) {
+  if (!closing.file.reset() || channel_->failure()) {
     return write_failure("the end of the file");
   }
   return write_seal(channel_->file(), layout_, tables_, offset_table_at, stored_table_at);
@@ -310,8 +311,9 @@ Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64
   auto channel = std::make_shared<grv::Hdf5Channel>(std::move(file));
   const grv::Hdf5Session session;
   auto program = grv::create_program(channel, layout, options);
-  if (!program) {
-    return channel->failure().value_or(Error{program.error().code, path + ": " + program.error().message});
+  if (!program || channel->failure()) {
+    const Error error = program ? grv::write_failure("the HDF5 file") : program.error();
+    return channel->failure().value_or(Error{error.code, path + ": " + error.message});
   }
   return std::unique_ptr<LineSink>(
       std::make_unique<grv::GrvSink>(std::move(output), channel, std::move(program).value(), layout, options));

@@ -112,6 +112,20 @@ TEST(GrvInHdf5, IsShownByH5dumpWithNumbersAndUnits) {
   EXPECT_NE(run("h5dump -d /layers/bits -s 0,0,0 -c 1,1,4 '" + path + "'").find("DATA {"), std::string::npos);
 }
 
+TEST(GrvInHdf5, KeepsNoTimeAnywhere) {
+  const Folder folder;
+  expect_ok(write_program(folder.file("a.grv"), make_program(9, 3, {Picture::noise}), {}));
+  const PlainHdf5 plain(folder.file("a.grv"));
+  int objects = 0;
+  const H5O_iterate_t look = [](hid_t, const char* name, const H5O_info_t* info, void* count) -> herr_t {
+    EXPECT_EQ(info->atime + info->mtime + info->ctime + info->btime, 0) << name;
+    ++*static_cast<int*>(count);
+    return 0;
+  };
+  ASSERT_GE(H5Ovisit(plain.file(), H5_INDEX_NAME, H5_ITER_INC, look, &objects), 0);
+  EXPECT_EQ(objects, 18);  // 4 groups, 14 datasets
+}
+
 TEST(GrvInHdf5, LeavesTheErrorPrinterOfTheApplicationAlone) {
   const H5E_auto2_t mine = [](hid_t, void*) -> herr_t { return 0; };
   H5E_auto2_t before = nullptr;
