@@ -45,12 +45,12 @@ def make_header(registers):
             "#include <cstdint>", "#include <string_view>", "", "namespace gravure::fpga {", "",
             "enum class RegisterAccess : std::uint8_t { read_only, read_write, write_only };", "",
             "/// One register of the board; docs/registers.md explains them.", "struct Register {",
-            "  std::string_view name;", "  std::uint8_t address;  ///< of its low 32-bit word", "  int bits;",
-            "  RegisterAccess access;", "  std::uint64_t reset;", "};", ""]
+            "  std::string_view name;", "  std::uint64_t reset;", "  int bits;",
+            "  std::uint8_t address;  ///< of its low 32-bit word", "  RegisterAccess access;", "};", ""]
     access = {"ro": "read_only", "rw": "read_write", "wo": "write_only"}
     for r in registers:
-        text += [f"inline constexpr Register {camel(r['name'])}Register{{", f"    \"{r['name']}\", {r['address']:#04x}, "
-                 f"{r['bits']}, RegisterAccess::{access[r['access']]}, {r['reset']:#x}}};"]
+        text += [f"inline constexpr Register {camel(r['name'])}Register{{", f"    \"{r['name']}\", {r['reset']:#x}, "
+                 f"{r['bits']}, {r['address']:#04x}, RegisterAccess::{access[r['access']]}}};"]
     text += ["", "inline constexpr Register kRegisters[] = {"]
     text += [f"    {camel(r['name'])}Register," for r in registers]
     return "\n".join(text + ["};", "", "}  // namespace gravure::fpga"]) + "\n"

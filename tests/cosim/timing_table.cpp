@@ -15,7 +15,7 @@ std::map<std::string, std::uint64_t> read_settings(std::istream& words, const st
   for (std::string word; words >> word && word != stop;) {
     const auto equal = word.find('=');
     if (equal == std::string::npos) {
-      throw std::runtime_error(where + ": \"" + word + "\" is not name=value");
+      throw std::runtime_error(std::string(where).append(": \"").append(word).append("\" is not name=value"));
     }
     settings[word.substr(0, equal)] = std::stoull(word.substr(equal + 1), nullptr, 0);
   }

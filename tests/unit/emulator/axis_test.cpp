@@ -9,7 +9,6 @@
 namespace gravure::emulator {
 namespace {
 
-using test::Frame;
 using test::Recorder;
 using test::send;
 using test::small_setup;

@@ -9,7 +9,6 @@ namespace {
 
 using test::describe;
 using test::EdgeHash;
-using test::expect_same_edges;
 using test::expect_same_edges_at_extremes;
 using test::expect_same_edges_at_random;
 using test::random_registers;
