@@ -70,7 +70,7 @@ std::int64_t worker_bytes(const LayerStack& stack, std::int64_t lines_per_chunk)
 }
 
 std::int64_t least_panel_bytes(const LayerStack& stack) {
-  return stack.lines_along == LinesAlong::columns ? 2 * 8 * row_bytes(stack.samples, stack.pixels) : 0;
+  return stack.lines_along == LinesAlong::columns ? 16 * row_bytes(stack.samples, stack.pixels) : 0;
 }
 
 struct Budget {
