@@ -1,7 +1,10 @@
 #include "gravure/sync/make_plan.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "check_job.hpp"
 #include "gravure/sync/ab_ratio.hpp"

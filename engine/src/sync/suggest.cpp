@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
+#include <string>
 #include <tuple>
+#include <utility>
 
 #include "check_job.hpp"
 #include "exact_criterion.hpp"

@@ -10,7 +10,7 @@ std::string number_text(const Rational& value) {
   if (denominator_of(value) == 1) {
     return to_string(numerator_of(value));
   }
-  const std::string exact = to_decimal_string(value);
+  std::string exact = to_decimal_string(value);
   if (exact.size() <= kShort && exact.find('/') == std::string::npos) {
     return exact;
   }
