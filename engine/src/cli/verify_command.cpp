@@ -27,13 +27,28 @@ struct Options {
   std::string images;
 };
 
-/// The job text in a program must lead to the very plan that stands in it.
+/// The first revolution that does not expose the layer its job asks for.
+std::optional<std::int64_t> wrong_layer(const ProgramHeader& header, LayerOrder order) {
+  const auto layers = static_cast<std::int64_t>(header.layers.size());
+  for (std::int64_t r = 0; r < header.plan.job.revolutions; ++r) {
+    // Layers are stored in the order in which they are first used, so their numbers are those of the order itself.
+    if (layer_of_revolution(order, layers, r) != header.layer_of_revolution[static_cast<std::size_t>(r)]) {
+      return r;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The job text in a program must lead to the very plan, and the order of layers, that stand in it.
 Result<std::optional<std::string>> plan_contradiction(const ProgramHeader& header) {
   GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));
   GRAVURE_TRY(Plan again, make_plan(job, header.plan.line.pixels, header.plan.job.revolutions));
   again.warnings = header.plan.warnings;  // those about images are not made here
   if (plan_to_json(again) == plan_to_json(header.plan)) {
-    return std::optional<std::string>();
+    const std::optional<std::int64_t> wrong = wrong_layer(header, job.image.order);
+    return wrong ? std::optional(
+                       fmt::format("revolution {} exposes another layer than its job asks for: compile again", *wrong))
+                 : std::nullopt;
   }
   return std::optional<std::string>(
       fmt::format("the program's plan is not the one its job leads to: increment {} every {} ticks in the program, {} "
@@ -128,8 +143,11 @@ Result<void> note_changed_sources(const ProgramHeader& header, const LayerStack&
     if (!seen.insert(stack.layers[layer].path).second) {
       continue;
     }
-    GRAVURE_TRY(const std::string now, sha256_file(stack.layers[layer].path));
-    if (now != source.sha256) {
+    const Result<std::string> now = sha256_file(stack.layers[layer].path);
+    if (!now) {
+      return now.error();
+    }
+    if (now.value() != source.sha256) {
       report.notes.push_back(stack.layers[layer].path + " is not the file that was compiled (other SHA-256)");
     }
   }
