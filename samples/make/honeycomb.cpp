@@ -91,7 +91,7 @@ void Honeycomb::row(std::int64_t y, std::vector<std::uint16_t>& levels) const {
                                                  tilt.around * static_cast<double>(place->around_um));
     const double flank = (static_cast<double>(place->border_um) - kHalfWallUm) / kFlankUm;
     const double depth = std::clamp(std::min(floor, flank), 0.0, 1.0);
-    const auto level = static_cast<std::uint16_t>(depth * 65535.0 + 0.5);
+    const auto level = static_cast<std::uint16_t>(std::lround(depth * 65535.0));
     levels[static_cast<std::size_t>(x)] = x < kWidth / 2 ? level : static_cast<std::uint16_t>(65535 - level);
   }
 }
