@@ -15,8 +15,16 @@ namespace {
 struct Options {
   std::string job;
   std::string output;
-  GrvOptions grv;
+  std::string compression = "zstd";
 };
+
+GrvOptions grv_options(const std::string& compression) {
+  GrvOptions grv;
+  grv.compression = compression == "zstd"      ? GrvOptions::Compression::zstd
+                    : compression == "deflate" ? GrvOptions::Compression::deflate
+                                               : GrvOptions::Compression::none;
+  return grv;
+}
 
 Json json_of(const ProgramHeader& header, const std::string& output) {
   Integer fired = 0;
@@ -38,10 +46,16 @@ Json json_of(const ProgramHeader& header, const std::string& output) {
 Result<int> run(const Options& options, const Command& command) {
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.job, files, true));
+  std::vector<std::string> inputs = {options.job};
+  for (const StackImage& image : loaded.images->images) {
+    inputs.push_back(image.path);
+  }
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs));
   GRAVURE_TRY(Compilation made, prepare_compilation(loaded, options.output));
-  GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
-              create_grv(options.output, static_cast<std::int64_t>(made.header.layers.size()),
-                         loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), options.grv));
+  GRAVURE_TRY(
+      const std::unique_ptr<LineSink> sink,
+      create_grv(options.output, static_cast<std::int64_t>(made.header.layers.size()),
+                 loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), grv_options(options.compression)));
   Result<ProgramHeader> compiled = [&] {
     ProgressBar bar("compile");
     CompileOptions compile_options;
@@ -73,12 +87,9 @@ void add_compile(CLI::App& app, Command& command) {
   const auto options = std::make_shared<Options>();
   verb->add_option("JOB", options->job, "Job file")->required();
   verb->add_option("-o,--output", options->output, "Program file to write (.grv)")->required();
-  verb->add_option("--compression", options->grv.compression, "How line bits are stored")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, GrvOptions::Compression>{{"zstd", GrvOptions::Compression::zstd},
-                                                         {"deflate", GrvOptions::Compression::deflate},
-                                                         {"none", GrvOptions::Compression::none}},
-          CLI::ignore_case));
+  verb->add_option("--compression", options->compression, "How line bits are stored")
+      ->check(CLI::IsMember({"zstd", "deflate", "none"}))
+      ->capture_default_str();
   add_work_options(*verb, command);
   verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
 }

@@ -102,6 +102,9 @@ Result<formats::VcdTime> vcd_time(std::int64_t fpga_hz) {
 }
 
 Result<std::uint64_t> write_edges(const Options& options) {
+  if (!options.edges_path.empty() && options.edges_path == options.vcd_path) {
+    return Error{ErrorCode::bad_argument, "--edges and --vcd both name " + options.vcd_path + ": give two files"};
+  }
   std::optional<TextOutput> csv;
   std::optional<TextOutput> vcd;
   GRAVURE_TRY(const formats::VcdTime time, vcd_time(options.fpga_hz));
@@ -190,6 +193,9 @@ Result<void> run_revolution(LineSource& program, std::int64_t revolution, Progra
 }
 
 Result<int> run_program(Options options, const Command& command) {
+  for (const std::string& output : {options.edges_path, options.vcd_path}) {
+    GRAVURE_CHECK(refuse_overwrite(output, {options.program}));
+  }
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const Plan& plan = program->header().plan;
   PinCounter pins;
@@ -238,6 +244,15 @@ void add_emulate(CLI::App& app, Command& command) {
   const auto options = std::make_shared<Options>();
   CLI::Option* program = verb->add_option("PROGRAM", options->program, "Program file (.grv)");
   CLI::Option* bits = verb->add_option("--bits", options->registers.bits, "Counter bits n")->excludes(program);
+  const CLI::Validator natural(
+      [](std::string& text) {
+        const bool digits =
+            !text.empty() && text.size() <= 20 && text.find_first_not_of("0123456789") == std::string::npos;
+        return digits && parse_decimal(text) && fits_uint64(floor_of(parse_decimal(text).value()))
+                   ? std::string()
+                   : "is not an integer from 0 to 18446744073709551615: " + text;
+      },
+      "0 to 2^64-1", "natural");
   CLI::Option* m = verb->add_option("--m", options->registers.prescaler, "Prescaler m")->excludes(program);
   CLI::Option* increment =
       verb->add_option("--increment", options->registers.increment, "Added every m-th clock")->excludes(program);
@@ -251,6 +266,9 @@ void add_emulate(CLI::App& app, Command& command) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40));
   CLI::Option* clocks =
       verb->add_option("--clocks", options->clocks, "FPGA clocks to run; for a program's edges: its length");
+  for (CLI::Option* option : {m, increment, num, den, clocks}) {
+    option->check(natural);
+  }
   verb->add_option("--edges", options->edges_path, "Write every A-B edge as CSV: tick,a,b");
   verb->add_option("--vcd", options->vcd_path, "Write A and B as a waveform (VCD)");
   verb->callback([=, &command] {

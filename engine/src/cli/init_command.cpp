@@ -42,8 +42,10 @@ Result<int> run(const Options& options, const Command& command) {
   const fs::path job = fs::path(options.folder) / "job.toml";
   const fs::path layers = fs::path(options.folder) / "layers";
   std::error_code failed;
-  if (fs::exists(job, failed)) {
-    return Error{ErrorCode::bad_argument, job.string() + ": is there already; give another folder"};
+  for (const fs::path& taken : {job, layers}) {
+    if (fs::exists(taken, failed)) {
+      return Error{ErrorCode::bad_argument, taken.string() + ": is there already; give another folder"};
+    }
   }
   fs::create_directories(layers, failed);
   if (failed) {

@@ -17,6 +17,13 @@ bool names_images(const ImageSettings& image) {
   return !image.files.empty() || image.depth_map.has_value();
 }
 
+bool images_are_there(const Job& job) {
+  const std::string folder = fs::path(job.path).parent_path().string();
+  const std::vector<std::string> patterns =
+      job.image.depth_map ? std::vector<std::string>{*job.image.depth_map} : job.image.files;
+  return static_cast<bool>(expand_patterns(folder.empty() ? "." : folder, patterns));
+}
+
 /// Relative to the folder where that is possible, so that a job and its program can move together.
 std::string relative_to(const std::string& path, const fs::path& folder) {
   std::error_code failed;
@@ -31,11 +38,9 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
   GRAVURE_TRY(loaded.job, read_job(path));
   const ImageSettings& image = loaded.job.image;
   if (names_images(image)) {
-    Result<ImageStack> stack = scan_stack(loaded.job, opener);
-    if (stack) {
-      loaded.images = std::move(stack).value();
-    } else if (need_images || !image.pixels_per_line) {
-      return stack.error();
+    // A job that says its pixels can be planned before its images are there; images that are there must be good.
+    if (need_images || !image.pixels_per_line || images_are_there(loaded.job)) {
+      GRAVURE_TRY(loaded.images, scan_stack(loaded.job, opener));
     }
   } else if (need_images) {
     return Error{ErrorCode::bad_argument, path + ": [image] names no files: give image.files or image.depth_map"};

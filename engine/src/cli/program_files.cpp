@@ -17,9 +17,14 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-/// Where a source lies now; empty if nowhere.
-std::string locate(const SourceImage& source, const ProgramHeader& header, const std::string& program_path,
-                   const std::string& images_folder) {
+}  // namespace
+
+DeviceFactory emulated_devices() {
+  return [](PinObserver& observer) { return std::make_unique<emulator::EmulatedDevice>(&observer); };
+}
+
+std::string locate_source(const SourceImage& source, const ProgramHeader& header, const std::string& program_path,
+                          const std::string& images_folder) {
   std::vector<fs::path> places;
   if (images_folder.empty()) {
     const fs::path job = fs::path(program_path).parent_path() / header.job_path;
@@ -35,10 +40,14 @@ std::string locate(const SourceImage& source, const ProgramHeader& header, const
   return {};
 }
 
-}  // namespace
-
-DeviceFactory emulated_devices() {
-  return [](PinObserver& observer) { return std::make_unique<emulator::EmulatedDevice>(&observer); };
+Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code ignored;
+    if (fs::equivalent(output, input, ignored)) {
+      return Error{ErrorCode::bad_argument, "output " + output + " is the input " + input + ": give another file name"};
+    }
+  }
+  return {};
 }
 
 Result<FoundImages> find_images(const ProgramHeader& header, const std::string& program_path,
@@ -46,7 +55,7 @@ Result<FoundImages> find_images(const ProgramHeader& header, const std::string& 
   FoundImages found;
   std::vector<std::string> paths;
   for (const SourceImage& source : header.sources) {
-    paths.push_back(locate(source, header, program_path, images_folder));
+    paths.push_back(locate_source(source, header, program_path, images_folder));
     if (paths.back().empty() && (found.missing.empty() || found.missing.back() != source.path)) {
       found.missing.push_back(source.path);
     }

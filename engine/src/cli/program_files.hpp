@@ -25,6 +25,13 @@ struct FoundImages {
 Result<FoundImages> find_images(const ProgramHeader& header, const std::string& program_path,
                                 const std::string& images_folder, const ImageOpener& opener);
 
+/// Where a source of a program lies now, by the same rules; empty if nowhere.
+std::string locate_source(const SourceImage& source, const ProgramHeader& header, const std::string& program_path,
+                          const std::string& images_folder);
+
+/// Fails with bad_argument where `output` is one of the files that are being read.
+Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs);
+
 /// "forward" or "reverse".
 const char* direction_name(bool reverse);
 const char* polarity_name(Fires fires);

@@ -105,6 +105,9 @@ Result<int> run(const Options& options, const Command& command) {
   if (failed) {
     return Error{ErrorCode::io, options.folder + ": cannot make the folder: " + failed.message()};
   }
+  for (std::int64_t level = 0; level < options.levels; ++level) {
+    GRAVURE_CHECK(refuse_overwrite(layer_path(options, level), {options.map}));
+  }
   std::vector<std::int64_t> fired(static_cast<std::size_t>(options.levels));
   constexpr std::int64_t kOpenAtOnce = 64;  // files; the map is read once for each such group
   ProgressBar bar("slice");
@@ -140,7 +143,7 @@ void add_slice(CLI::App& app, Command& command) {
   verb->add_option("-o,--output", options->folder, "Folder for the layers")->required();
   verb->add_option("--levels", options->levels, "Number of layers")
       ->required()
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{65535}));
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
   verb->add_option("--fires", options->fires, "Which end of the map is deep, and fires in the layers")
       ->required()
       ->check(CLI::IsMember({"white", "black"}));

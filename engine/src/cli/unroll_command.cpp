@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
+#include <vector>
 
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
@@ -16,11 +18,20 @@ struct Options {
   std::string program;
   std::int64_t revolution = 0;
   std::string output;
-  TiffCompression compression = TiffCompression::deflate;
+  std::string compression = "deflate";
 };
 
-/// The size tags of the source, where it is still there, so that the picture equals a layer written the same way; else
-/// its size on the workpiece.
+TiffCompression compression_of(const std::string& name) {
+  static const std::map<std::string, TiffCompression> names = {{"none", TiffCompression::none},
+                                                               {"packbits", TiffCompression::packbits},
+                                                               {"lzw", TiffCompression::lzw},
+                                                               {"deflate", TiffCompression::deflate},
+                                                               {"g4", TiffCompression::g4}};
+  return names.at(name);
+}
+
+/// The size tags and the photometric sense of the source, where it is still there, so that the picture equals a layer
+/// written the same way; else its size on the workpiece.
 Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& options) {
   const UnrolledSize size = unrolled_size(header);
   const double along = 1000.0 / to_double(header.plan.line.pixel_pitch_um);
@@ -29,17 +40,21 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& opti
   BilevelTiffPage page;
   page.width = size.width;
   page.height = size.height;
-  page.compression = options.compression;
+  page.compression = compression_of(options.compression);
   page.x_dots_per_mm = rows ? along : across;
   page.y_dots_per_mm = rows ? across : along;
+  if (options.revolution < 0 || options.revolution >= header.plan.job.revolutions) {
+    return page;  // unroll() says what is wrong
+  }
+  const std::uint32_t layer = header.layer_of_revolution[static_cast<std::size_t>(options.revolution)];
+  const SourceImage& source = header.sources[static_cast<std::size_t>(header.layers[layer].source)];
+  const std::string path = locate_source(source, header, options.program, {});
+  GRAVURE_CHECK(refuse_overwrite(options.output, {options.program, path}));
   const ImageFiles files;
-  GRAVURE_TRY(const FoundImages found, find_images(header, options.program, {}, files));
-  if (found.stack && options.revolution >= 0 && options.revolution < header.plan.job.revolutions) {
-    const std::uint32_t layer = header.layer_of_revolution[static_cast<std::size_t>(options.revolution)];
-    const LayerInput& input = found.stack->layers[layer];
-    GRAVURE_TRY(const std::unique_ptr<ImageSource> source, files.open(input.path, input.page));
-    page.x_dots_per_mm = source->info().x_dots_per_mm;
-    page.y_dots_per_mm = source->info().y_dots_per_mm;
+  if (const Result<std::unique_ptr<ImageSource>> image = files.open(path, source.page); !path.empty() && image) {
+    page.x_dots_per_mm = image.value()->info().x_dots_per_mm;
+    page.y_dots_per_mm = image.value()->info().y_dots_per_mm;
+    page.zero_is_white = image.value()->info().zero_is_white;
   }
   return page;
 }
@@ -49,12 +64,23 @@ Result<int> run(const Options& options, const Command& command) {
   const ProgramHeader& header = program->header();
   GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options));
   GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(options.output, page));
+  std::vector<std::byte> inverted;
   UnrollOptions unroll_options;
   unroll_options.memory_bytes = command.memory_bytes();
   unroll_options.cancel = &cancel_token();
   GRAVURE_CHECK(unroll(
       *program, emulated_devices(), options.revolution,
-      [&writer](std::span<const std::byte> rows, std::int64_t) { return writer.append_rows(rows); }, unroll_options));
+      [&](std::span<const std::byte> rows, std::int64_t) {
+        if (!page.zero_is_white) {
+          return writer.append_rows(rows);
+        }
+        inverted.assign(rows.begin(), rows.end());
+        for (std::byte& byte : inverted) {
+          byte = ~byte;
+        }
+        return writer.append_rows(inverted);
+      },
+      unroll_options));
   GRAVURE_CHECK(writer.commit());
   const std::uint32_t layer = header.layer_of_revolution[static_cast<std::size_t>(options.revolution)];
   const SourceImage& source = header.sources[static_cast<std::size_t>(header.layers[layer].source)];
@@ -84,13 +110,9 @@ void add_unroll(CLI::App& app, Command& command) {
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
   verb->add_option("--revolution", options->revolution, "Revolution, from 0")->required();
   verb->add_option("-o,--output", options->output, "Bilevel TIFF to write")->required();
-  verb->add_option("--compression", options->compression, "Of the TIFF; default deflate")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, TiffCompression>{{"none", TiffCompression::none},
-                                                                         {"packbits", TiffCompression::packbits},
-                                                                         {"lzw", TiffCompression::lzw},
-                                                                         {"deflate", TiffCompression::deflate},
-                                                                         {"g4", TiffCompression::g4}}));
+  verb->add_option("--compression", options->compression, "Of the TIFF")
+      ->check(CLI::IsMember({"none", "packbits", "lzw", "deflate", "g4"}))
+      ->capture_default_str();
   add_work_options(*verb, command);
   verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
 }

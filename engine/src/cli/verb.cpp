@@ -27,7 +27,7 @@ void print(const std::string& text) {
 }
 
 void print_json(const Json& document) {
-  print(document.dump(2) + "\n");
+  print(document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void warn(const std::string& text) {

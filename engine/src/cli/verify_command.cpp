@@ -99,6 +99,7 @@ Json json_of(const VerifyReport& report, const ProgramHeader& header) {
             {"max_um", report.seam_max_um},
             {"worst", {{"revolution", report.seam_worst_revolution}, {"line", report.seam_worst_line}}},
             {"accumulated_um", report.seam_end_um},
+            {"measured_end_um", report.seam_end_measured_um ? Json(*report.seam_end_measured_um) : Json(nullptr)},
             {"drift_um_per_revolution", to_double(header.plan.ab.drift_um_per_revolution)},
             {"revolutions", seam}}},
           {"axis",
@@ -125,6 +126,10 @@ std::string text_of(const VerifyReport& report, const ProgramHeader& header) {
   text += fmt::format(
       "axis: one A-B edge is {:.6g} um; edges and ideal turning at most {:.6g} um apart (revolution {}, line {})\n",
       report.ab_step_um, report.axis_error_max_um, report.axis_worst_revolution, report.axis_worst_line);
+  if (report.seam_end_measured_um) {
+    text += fmt::format("axis after the last line, as the device counts its edges: {:+.6g} um\n",
+                        *report.seam_end_measured_um);
+  }
   for (const std::string& note : report.notes) {
     text += "note: " + note + "\n";
   }

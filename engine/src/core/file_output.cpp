@@ -92,8 +92,9 @@ Result<FileOutput> FileOutput::create(const std::string& path) {
   if (path.empty() || std::filesystem::is_directory(path, ignored)) {
     return Error{ErrorCode::io, "output \"" + path + "\" is a folder: give a file name"};
   }
-  // Renaming onto a device or pipe would replace it, not write to it.
-  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+  // Renaming onto a link, device or pipe would replace it, not write to it.
+  const std::filesystem::file_status there = std::filesystem::symlink_status(path, ignored);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
     return Error{ErrorCode::io,
                  "output \"" + path + "\" is not a regular file: it cannot appear whole; give a file name"};
   }
@@ -138,11 +139,13 @@ Result<void> write_file(const std::string& path, std::string_view content) {
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.valid()) {
-    return system_error("cannot open", path);
+    Error error = system_error("cannot open", path);
+    error.code = ErrorCode::bad_file;  // an input that is not there is the user's to mend
+    return error;
   }
   struct stat status = {};
   if (::fstat(file.get(), &status) != 0 || S_ISDIR(status.st_mode)) {
-    return Error{ErrorCode::io, path + ": is not a file"};
+    return Error{ErrorCode::bad_file, path + ": is not a file"};
   }
   std::string content;
   char buffer[65536];

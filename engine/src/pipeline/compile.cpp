@@ -4,6 +4,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <numeric>
 #include <string>
 #include <thread>
@@ -129,6 +130,14 @@ class Compiler {
 
  private:
   void work() {
+    try {
+      work_on_tickets();
+    } catch (const std::bad_alloc&) {
+      writer_.fail({ErrorCode::io, "out of memory: lower --memory or --threads"});
+    }
+  }
+
+  void work_on_tickets() {
     LayerReader reader(stack_, opener_, budget_.panel_bytes);
     const std::size_t bytes = static_cast<std::size_t>(geometry_.lines_per_chunk * geometry_.line_bytes);
     std::vector<std::byte> read(bytes);

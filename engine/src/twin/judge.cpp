@@ -1,9 +1,17 @@
 #include "judge.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 namespace gravure {
 namespace {
+
+/// Six significant digits, however small the value is.
+std::string figure(double value) {
+  char text[32];
+  static_cast<void>(std::snprintf(text, sizeof text, "%.6g", value));
+  return text;
+}
 
 /// The seam after every revolution: the drift of the registers the device ran with, exact.
 void fill_seam(const Plan& plan, const AxisCheck& axis, VerifyReport& report) {
@@ -31,8 +39,8 @@ void judge_drift(const Plan& plan, const AxisCheck& axis, const Tally& tally, Ve
     report.violations.push_back(
         "the A-B registers (m = " + std::to_string(plan.ab.prescaler) +
         ", increment = " + std::to_string(plan.ab.increment) + " + " + std::to_string(plan.ab.fraction_num) + "/" +
-        std::to_string(plan.ab.fraction_den) + ") drift by " + std::to_string(to_double(per_revolution)) +
-        " lines per revolution, the plan says " + std::to_string(to_double(plan.ab.drift_lines_per_revolution)) +
+        std::to_string(plan.ab.fraction_den) + ") drift by " + figure(to_double(per_revolution)) +
+        " lines per revolution, the plan says " + figure(to_double(plan.ab.drift_lines_per_revolution)) +
         ": they are not those of this geometry; compile the job again");
   }
   if (!tally.end_edges) {
@@ -45,10 +53,9 @@ void judge_drift(const Plan& plan, const AxisCheck& axis, const Tally& tally, Ve
                          plan.rotary.lines_per_revolution;
   if (measured > drift || drift - measured >= axis.largest_lag_edges()) {
     report.violations.push_back("at the end of the last line the device's axis is " +
-                                std::to_string(*report.seam_end_measured_um) + " um off, the plan's drift explains " +
-                                std::to_string(to_double(drift) * axis.step_um()) + " um and less than " +
-                                std::to_string(to_double(axis.largest_lag_edges()) * axis.step_um()) +
-                                " um of step behind it");
+                                figure(*report.seam_end_measured_um) + " um off, the plan's drift explains " +
+                                figure(to_double(drift) * axis.step_um()) + " um and less than " +
+                                figure(to_double(axis.largest_lag_edges()) * axis.step_um()) + " um of step behind it");
   }
 }
 
@@ -93,7 +100,7 @@ void say_violations(const Plan& plan, const AxisCheck& axis, const Tally& tally,
   judge_drift(plan, axis, tally, report);
   const Rational limit_lines = plan.ab.seam_limit_um / plan.rotary.line_pitch_um;
   if (abs(Rational(axis.drift_per_line() * lines)) > limit_lines) {
-    say("seam error of " + std::to_string(report.seam_max_um) +
+    say("seam error of " + figure(report.seam_max_um) +
         " um at the end of the job exceeds limits.seam_um = " + to_decimal_string(plan.ab.seam_limit_um) +
         ": set fpga.fractional, raise scanner.max_extra_slots, or see `gravure suggest`");
   }

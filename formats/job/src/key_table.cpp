@@ -139,7 +139,7 @@ constexpr std::array kTable = {
          [](Job& j, const Value& v) { j.image.fires = enum_of<Fires>(kFires, v); }),
     word("image", "lines_along", kLinesAlong, "\"rows\"",
          [](Job& j, const Value& v) { j.image.lines_along = enum_of<LinesAlong>(kLinesAlong, v); }),
-    integer("image", "revolutions", "turns", "1", "1_000_000_000", "one per layer",
+    integer("image", "revolutions", "turns", "1", "1_000_000", "one per layer",
             [](Job& j, const Value& v) { j.image.revolutions = v.integer; }),
     word("image", "order", kOrders, "\"sequence\"",
          [](Job& j, const Value& v) { j.image.order = enum_of<LayerOrder>(kOrders, v); }),

@@ -204,7 +204,7 @@ TEST(ReadFile, RefusesFoldersAndWhatIsNotThere) {
   for (const std::string& path : {folder.path(), folder / "missing", std::string()}) {
     const Result<std::string> got = read_file(path, 10);
     ASSERT_FALSE(got) << path;
-    EXPECT_EQ(got.error().code, ErrorCode::io);
+    EXPECT_EQ(got.error().code, ErrorCode::bad_file);
   }
 }
 

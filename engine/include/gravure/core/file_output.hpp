@@ -32,7 +32,7 @@ class FileOutput {
 
 /// Writes `content` to `path`, whole or not at all.
 Result<void> write_file(const std::string& path, std::string_view content);
-/// Reads a file of at most `max_bytes`; bad_file beyond, io where it cannot be read.
+/// Reads a file of at most `max_bytes`; bad_file beyond or where it cannot be opened, io where reading breaks off.
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes);
 
 }  // namespace gravure
