@@ -16,8 +16,8 @@ int main() {
     return 1;
   }
   const gravure::AbPlan& ab = plan.value().ab;
-  auto edges = gravure::fpga::AbEdges::make(
-      {ab.counter_bits, ab.prescaler, ab.increment, ab.fraction_num, ab.fraction_den});
+  auto edges =
+      gravure::fpga::AbEdges::make({ab.counter_bits, ab.prescaler, ab.increment, ab.fraction_num, ab.fraction_den});
   const auto first = edges->next_edge();
   std::printf("first edge on clock %llu\n", static_cast<unsigned long long>(first->clock));
   return gravure::open_grv("missing.grv") ? 1 : 0;
