@@ -66,10 +66,15 @@ Result<void> make_small(const std::string& folder) {
     options.compression = compression;
     options.tiled = layer == 5;
     options.x_dots_per_mm = options.y_dots_per_mm = 125;
-    const std::string name = "layer_" + std::to_string(8 + layer) + ".tif";  // 8, 9, 10, ...: natural order matters
-    GRAVURE_CHECK(write_image(folder + "/" + name, kSmallPixels, kSmallLines, {small_layer(layer)}, options));
-    GRAVURE_CHECK(
-        write_image(folder + "/columns/" + name, kSmallLines, kSmallPixels, {turned(small_layer(layer))}, options));
+    std::string name = "/layer_";  // 8, 9, 10, ...: natural order matters
+    name += std::to_string(8 + layer) + ".tif";
+    std::string upright_path = folder;
+    upright_path += name;
+    std::string turned_path = folder;
+    turned_path.append("/columns").append(name);
+    const RowSource picture = small_layer(layer);
+    GRAVURE_CHECK(write_image(upright_path, kSmallPixels, kSmallLines, {picture}, options));
+    GRAVURE_CHECK(write_image(turned_path, kSmallLines, kSmallPixels, {turned(picture)}, options));
     ++layer;
   }
   return {};
@@ -78,6 +83,7 @@ Result<void> make_small(const std::string& folder) {
 Result<void> make_formats(const std::string& folder) {
   for (const FormatFile& file : format_files()) {
     std::vector<RowSource> pages;
+    pages.reserve(static_cast<std::size_t>(file.pages));
     for (int page = 0; page < file.pages; ++page) {
       pages.push_back(format_page(page));
     }
