@@ -194,7 +194,8 @@ TEST_F(FormatSet, NeverCrashesOnDamage) {
       std::string bytes = whole;
       const std::size_t reach = trial % 2 == 0 ? bytes.size() : std::min<std::size_t>(bytes.size(), 400);
       for (int flips = 0; flips <= trial % 3; ++flips) {
-        bytes[rng() % reach] ^= static_cast<char>(1U << (rng() % 8));
+        char& byte = bytes[rng() % reach];
+        byte = static_cast<char>(byte ^ static_cast<char>(1U << (rng() % 8)));
       }
       put_file(*folder_ / "bad", bytes);
       const auto source = files_.open(*folder_ / "bad", 0);  // refused or read: either is right

@@ -27,8 +27,8 @@ class ImportRefuses : public testing::Test {
     expect_refused("a.bmp", words);
   }
   /// 8 x 8 float samples, whatever the channels and windows.
-  void write_exr(OIIO::ImageSpec spec) {
-    const std::vector<float> values(64 * 4);
+  void write_exr(const OIIO::ImageSpec& spec) {
+    const std::vector<float> values(256);
     const auto output = OIIO::ImageOutput::create("openexr");
     ASSERT_TRUE(output->open(folder_ / "a.exr", spec));
     ASSERT_TRUE(output->write_image(OIIO::TypeFloat, values.data()));
@@ -42,7 +42,7 @@ class ImportRefuses : public testing::Test {
 TEST_F(ImportRefuses, ColourAlphaAndPalettesOfPng) {
   RawPng png;
   png.depth = 8;
-  png.rows = std::string(2 * 16 * 4, '\0');
+  png.rows = std::string(128, '\0');
   const std::string what_to_do = "save it as greyscale or 1 bit";
   for (const auto& [type, words] : {std::pair<int, const char*>{2, "is in colour"},
                                     {3, "has a palette"},
@@ -112,7 +112,7 @@ TEST_F(ImportRefuses, ColourPalettesAndPackingsOfBmp) {
   bmp.compression = 1;
   refuse_bmp(bmp, "is compressed (1)");
   bmp.compression = 0;
-  bmp.data = std::string(2 * 64, '\0');
+  bmp.data = std::string(128, '\0');
   bmp.bits = 4;
   refuse_bmp(bmp, "4 bits a pixel");
   for (const int bits : {16, 24, 32}) {
@@ -172,18 +172,20 @@ TEST_F(ImportRefuses, OpenExrThatDeclareMoreThanTheyHold) {
   write_exr(spec);
   const std::string good = file_bytes(folder_ / "a.exr");
   const std::size_t window = good.find(std::string("dataWindow\0box2i\0", 17)) + 17 + 4;
-  const auto with = [&](std::size_t corner, const char* value) {
+  const auto with = [&](std::size_t corner, std::uint32_t value) {
     std::string bytes = good;
-    bytes.replace(window + 4 * corner, 4, std::string(value, 4));
+    for (std::size_t i = 0; i < 4; ++i) {
+      bytes[window + 4 * corner + i] = static_cast<char>(value >> (8 * i));
+    }
     put_file(folder_ / "a.exr", bytes);
   };
-  with(2, "\xFF\xFF\xFF\x7F");
+  with(2, 0x7FFFFFFF);
   expect_refused("a.exr", "a row is larger than");
-  with(2, "\xFF\xFF\x0F\0");
+  with(2, 0x000FFFFF);
   expect_refused("a.exr", "OpenEXR is read up to 262144");
-  with(2, "\xFF\xFF\xFF\xFF");
+  with(2, 0xFFFFFFFF);
   expect_refused("a.exr", "both must be 1 or more");
-  with(3, "\xFF\xFF\xFF\x7F");
+  with(3, 0x7FFFFFFF);
   expect_refused("a.exr", "bytes cannot hold");
 }
 

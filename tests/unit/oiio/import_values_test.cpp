@@ -144,7 +144,7 @@ TEST(ImportedValues, BringTheSizeTagAlong) {
   }
 }
 
-void write_exr(const std::string& path, const std::vector<float>& values, OIIO::TypeDesc type, int tile = 0) {
+void write_exr(const std::string& path, const std::vector<float>& values, const OIIO::TypeDesc& type, int tile = 0) {
   OIIO::ImageSpec spec(8, static_cast<int>(values.size() / 8), 1, type);
   spec.channelnames = {"Z"};
   spec.tile_width = spec.tile_height = tile;
@@ -175,12 +175,12 @@ TEST(ImportedValues, ThatAreNoNumbersAreRefusedWithTheirPlace) {
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float bad : {std::nanf(""), -std::nanf(""), infinity, -infinity}) {
     for (const int tile : {0, 16}) {
-      std::vector<float> values(8 * 40, 0.5F);
+      std::vector<float> values(320, 0.5F);
       values[8 * 37 + 3] = bad;
       write_exr(folder / "bad.exr", values, OIIO::TypeFloat, tile);
       const auto source = files.open(folder / "bad.exr", 0);
       ASSERT_TRUE(source) << source.error().message;
-      std::vector<float> rows(8 * 40);
+      std::vector<float> rows(320);
       const auto bytes = std::as_writable_bytes(std::span(rows));
       EXPECT_TRUE(source.value()->read_rows(0, 37, bytes)) << "the rows before it are good";
       const auto done = source.value()->read_rows(30, 10, bytes);

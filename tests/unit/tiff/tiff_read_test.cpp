@@ -105,9 +105,9 @@ TEST(BilevelTiff, GivesTheSameRowsInPartsAsWhole) {
     const auto source = BilevelTiffOpener().open(folder / "p.tif", 0);
     ASSERT_TRUE(source) << source.error().message;
     for (int trial = 0; trial < 500; ++trial) {
-      const std::int64_t first = rng() % static_cast<std::uint32_t>(bits.height);
-      const std::int64_t count =
-          trial == 0 ? bits.height - first : rng() % static_cast<std::uint32_t>(bits.height - first + 1);
+      const auto first = static_cast<std::int64_t>(rng() % static_cast<std::uint64_t>(bits.height));
+      const auto most = static_cast<std::uint64_t>(bits.height - first);
+      const auto count = static_cast<std::int64_t>(trial == 0 ? most : rng() % (most + 1));
       Bits part{bits.width, count, std::vector<std::byte>(static_cast<std::size_t>(count * bits.row_size()))};
       const auto done = source.value()->read_rows(first, count, part.bytes);
       ASSERT_TRUE(done) << done.error().message;
