@@ -4,7 +4,6 @@
 
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
-#include "gravure/pipeline/compile.hpp"
 #include "job_loader.hpp"
 #include "program_files.hpp"
 #include "verb.hpp"
@@ -51,21 +50,8 @@ Result<int> run(const Options& options, const Command& command) {
     inputs.push_back(image.path);
   }
   GRAVURE_CHECK(refuse_overwrite(options.output, inputs));
-  GRAVURE_TRY(Compilation made, prepare_compilation(loaded, options.output));
-  GRAVURE_TRY(
-      const std::unique_ptr<LineSink> sink,
-      create_grv(options.output, static_cast<std::int64_t>(made.header.layers.size()),
-                 loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), grv_options(options.compression)));
-  Result<ProgramHeader> compiled = [&] {
-    ProgressBar bar("compile");
-    CompileOptions compile_options;
-    compile_options.memory_bytes = command.memory_bytes();
-    compile_options.threads = command.threads;
-    compile_options.cancel = &cancel_token();
-    compile_options.progress = &bar;
-    return compile(std::move(made.header), made.stack, files, *sink, compile_options);
-  }();
-  GRAVURE_TRY(const ProgramHeader header, std::move(compiled));
+  GRAVURE_TRY(const ProgramHeader header,
+              compile_job(loaded, files, options.output, grv_options(options.compression), command));
   for (const std::string& warning : header.plan.warnings) {
     warn(warning);
   }

@@ -80,8 +80,12 @@ void add_dump(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "dump", "The slots of one line as 0 and 1 in time order");
   const auto options = std::make_shared<Options>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
-  verb->add_option("--revolution", options->revolution, "Revolution, from 0")->required();
-  verb->add_option("--line", options->line, "Line of the revolution, from 0")->required();
+  verb->add_option("--revolution", options->revolution, "Revolution, from 0")
+      ->required()
+      ->check(integer_from(0, kMostIndex));
+  verb->add_option("--line", options->line, "Line of the revolution, from 0")
+      ->required()
+      ->check(integer_from(0, kMostIndex));
   verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
 }
 

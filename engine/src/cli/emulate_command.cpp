@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -243,16 +244,10 @@ void add_emulate(CLI::App& app, Command& command) {
       add_verb(app, command, "emulate", "The FPGA alone: a program, or the A-B counter from its registers");
   const auto options = std::make_shared<Options>();
   CLI::Option* program = verb->add_option("PROGRAM", options->program, "Program file (.grv)");
-  CLI::Option* bits = verb->add_option("--bits", options->registers.bits, "Counter bits n")->excludes(program);
-  const CLI::Validator natural(
-      [](std::string& text) {
-        const bool digits =
-            !text.empty() && text.size() <= 20 && text.find_first_not_of("0123456789") == std::string::npos;
-        return digits && parse_decimal(text) && fits_uint64(floor_of(parse_decimal(text).value()))
-                   ? std::string()
-                   : "is not an integer from 0 to 18446744073709551615: " + text;
-      },
-      "0 to 2^64-1", "natural");
+  CLI::Option* bits = verb->add_option("--bits", options->registers.bits, "Counter bits n")
+                          ->excludes(program)
+                          ->check(integer_from(fpga::kMinCounterBits, fpga::kMaxCounterBits));
+  const CLI::Validator natural = integer_from(0, std::numeric_limits<std::uint64_t>::max());
   CLI::Option* m = verb->add_option("--m", options->registers.prescaler, "Prescaler m")->excludes(program);
   CLI::Option* increment =
       verb->add_option("--increment", options->registers.increment, "Added every m-th clock")->excludes(program);
@@ -262,8 +257,9 @@ void add_emulate(CLI::App& app, Command& command) {
       verb->add_option("--den", options->registers.fraction_den, "Fraction: denominator")->excludes(program);
   num->needs(den);
   den->needs(num);
-  verb->add_option("--fpga-hz", options->fpga_hz, "Clock, for the times in the VCD file; without it a tick is 1 ns")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40));
+  CLI::Option* hz =
+      verb->add_option("--fpga-hz", options->fpga_hz, "Clock, for the times in the VCD file; without it a tick is 1 ns")
+          ->check(integer_from(1, std::uint64_t{1} << 40));
   CLI::Option* clocks =
       verb->add_option("--clocks", options->clocks, "FPGA clocks to run; for a program's edges: its length");
   for (CLI::Option* option : {m, increment, num, den, clocks}) {
@@ -272,6 +268,14 @@ void add_emulate(CLI::App& app, Command& command) {
   verb->add_option("--edges", options->edges_path, "Write every A-B edge as CSV: tick,a,b");
   verb->add_option("--vcd", options->vcd_path, "Write A and B as a waveform (VCD)");
   verb->callback([=, &command] {
+    const bool writes = !options->edges_path.empty() || !options->vcd_path.empty();
+    if (hz->count() != 0 && (options->vcd_path.empty() || !options->program.empty())) {
+      throw CLI::ValidationError("--fpga-hz",
+                                 "is the time base of --vcd, of the counter alone; a program knows its own");
+    }
+    if (!options->program.empty() && clocks->count() != 0 && !writes) {
+      throw CLI::ValidationError("--clocks", "is the length of --edges and --vcd; a program runs to its end");
+    }
     if (options->program.empty()) {
       for (const CLI::Option* needed : {bits, m, increment, clocks}) {
         if (needed->count() == 0) {

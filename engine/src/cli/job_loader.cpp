@@ -6,6 +6,7 @@
 
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/job_file.hpp"
+#include "gravure/pipeline/compile.hpp"
 #include "gravure/sync/make_plan.hpp"
 
 namespace gravure::cli {
@@ -43,15 +44,16 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
       GRAVURE_TRY(loaded.images, scan_stack(loaded.job, opener));
     }
   } else if (need_images) {
-    return Error{ErrorCode::bad_argument, path + ": [image] names no files: give image.files or image.depth_map"};
+    return Error{ErrorCode::bad_argument,
+                 loaded.job.place_of("image") + "[image] names no files: give image.files or image.depth_map"};
   }
   std::optional<std::int64_t> layers = image.levels;
   if (loaded.images) {
     layers = loaded.images->layers;
     loaded.pixels_per_line = scan_size(image, loaded.images->width(), loaded.images->height()).pixels_per_line;
     if (image.pixels_per_line && *image.pixels_per_line != loaded.pixels_per_line) {
-      return Error{ErrorCode::bad_argument, path +
-                                                ": image.pixels_per_line = " + std::to_string(*image.pixels_per_line) +
+      return Error{ErrorCode::bad_argument, loaded.job.place_of("image.pixels_per_line") +
+                                                "image.pixels_per_line = " + std::to_string(*image.pixels_per_line) +
                                                 ": the images have " + std::to_string(loaded.pixels_per_line)};
     }
   } else {
@@ -83,6 +85,14 @@ LayerStack stack_settings(const ImageSettings& image, const Plan& plan) {
   stack.depth_max = image.depth_max;
   return stack;
 }
+
+namespace {
+
+/// What compile() takes.
+struct Compilation {
+  ProgramHeader header;
+  LayerStack stack;
+};
 
 Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::string& program_path) {
   Compilation made;
@@ -129,6 +139,23 @@ Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::stri
     made.stack.layers.push_back({image.path, image.page, stored_layer.level});
   }
   return made;
+}
+
+}  // namespace
+
+Result<ProgramHeader> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const std::string& output,
+                                  const GrvOptions& grv, const Command& command) {
+  GRAVURE_TRY(Compilation made, prepare_compilation(loaded, output));
+  GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
+              create_grv(output, static_cast<std::int64_t>(made.header.layers.size()),
+                         loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), grv));
+  ProgressBar bar("compile");
+  CompileOptions options;
+  options.memory_bytes = command.memory_bytes();
+  options.threads = command.threads;
+  options.cancel = &cancel_token();
+  options.progress = &bar;
+  return compile(std::move(made.header), made.stack, opener, *sink, options);
 }
 
 }  // namespace gravure::cli

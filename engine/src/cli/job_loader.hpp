@@ -6,8 +6,10 @@
 #include "gravure/core/job.hpp"
 #include "gravure/core/plan.hpp"
 #include "gravure/core/program.hpp"
+#include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_stack.hpp"
 #include "gravure/pipeline/layer_reader.hpp"
+#include "verb.hpp"
 
 namespace gravure::cli {
 
@@ -23,12 +25,9 @@ struct LoadedJob {
 /// Reads and plans a job. A job that gives pixels_per_line can be planned without its images, unless `need_images`.
 Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, bool need_images);
 
-/// What compile() takes: the header of the program (layers that no revolution uses left out) and its image stack.
-struct Compilation {
-  ProgramHeader header;
-  LayerStack stack;
-};
-Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::string& program_path);
+/// Compiles a loaded job (with its images) to the program file `output`; layers that no revolution uses are left out.
+Result<ProgramHeader> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const std::string& output,
+                                  const GrvOptions& grv, const Command& command);
 
 /// Settings of a stack that come from the job.
 LayerStack stack_settings(const ImageSettings& image, const Plan& plan);

@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "motion_command.hpp"
 #include "verb.hpp"
@@ -38,6 +42,30 @@ int report(const Error& error, bool json) {
   return gravure::exit_status(error.code);
 }
 
+/// "gravure --help", or that of the verb that was given.
+std::string help_of(const CLI::App& app) {
+  const std::vector<CLI::App*> verbs = app.get_subcommands();
+  return "gravure " + (verbs.empty() ? "" : verbs.front()->get_name() + " ") + "--help";
+}
+
+/// What the parser would take for something else: an empty text for 0 or no path, an unknown verb for a missing one.
+void refuse_ambiguous(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const auto empty = std::find(arguments.begin(), arguments.end(), "");
+  if (empty != arguments.end()) {
+    throw CLI::ValidationError(empty == arguments.begin() ? "the verb" : "the argument after " + *(empty - 1),
+                               "is empty");
+  }
+  const std::vector<const CLI::App*> known = app.get_subcommands([](const CLI::App*) { return true; });
+  const auto is_given = [&](const CLI::App* verb) { return verb->get_name() == arguments[0]; };
+  if (!arguments.empty() && arguments[0][0] != '-' && std::none_of(known.begin(), known.end(), is_given)) {
+    std::string verbs;
+    for (const CLI::App* verb : known) {
+      verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+    }
+    throw CLI::ValidationError("\"" + arguments[0].substr(0, 40) + "\"", "is no verb; the verbs are " + verbs);
+  }
+}
+
 int run(int argc, char** argv) {
   Command command;
   CLI::App app("Raster gravure engine for rotational workpieces: image stacks to verified laser programs.", "gravure");
@@ -57,10 +85,18 @@ int run(int argc, char** argv) {
   gravure::cli::add_verify(app, command);
   gravure::cli::add_emulate(app, command);
   gravure::cli::add_motion_command(app, command);
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {
+    refuse_ambiguous(app, arguments);
     app.parse(argc, argv);
+  } catch (const CLI::Success& shown) {  // --help, --version
+    app.exit(shown);
+    return std::cout.flush() ? 0 : report({gravure::ErrorCode::io, "standard output: cannot write"}, false);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    const bool json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
+    const bool no_verb = std::string(error.what()) == "A subcommand is required";
+    const std::string what = no_verb ? "a verb is missing" : error.what();
+    return report({gravure::ErrorCode::bad_argument, what + "; see " + help_of(app)}, json);
   }
   watch_signals();
   const Result<int> result = command.run();

@@ -141,9 +141,7 @@ void add_slice(CLI::App& app, Command& command) {
   const auto options = std::make_shared<Options>();
   verb->add_option("MAP", options->map, "Depth map: 8 or 16 bits, or float")->required();
   verb->add_option("-o,--output", options->folder, "Folder for the layers")->required();
-  verb->add_option("--levels", options->levels, "Number of layers")
-      ->required()
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{65536}));
+  verb->add_option("--levels", options->levels, "Number of layers")->required()->check(integer_from(1, 65536));
   verb->add_option("--fires", options->fires, "Which end of the map is deep, and fires in the layers")
       ->required()
       ->check(CLI::IsMember({"white", "black"}));

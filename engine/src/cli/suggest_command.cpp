@@ -84,8 +84,8 @@ std::string outlook_text(const SuggestOutlook& outlook) {
 }
 
 Result<int> run(Options options, const Command& command) {
-  GRAVURE_TRY(options.tolerances.pitch_percent, parse_decimal(options.pitch_percent));
-  GRAVURE_TRY(options.tolerances.diameter_um, parse_decimal(options.diameter_um));
+  GRAVURE_TRY(options.tolerances.pitch_percent, decimal_option("--pitch-percent", options.pitch_percent));
+  GRAVURE_TRY(options.tolerances.diameter_um, decimal_option("--diameter-um", options.diameter_um));
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.job, files, false));
   GRAVURE_TRY(const std::vector<Suggestion> found,
@@ -113,15 +113,15 @@ void add_suggest(CLI::App& app, Command& command) {
   const auto options = std::make_shared<Options>();
   verb->add_option("JOB", options->job, "Job file")->required();
   verb->add_option("--lines", options->tolerances.lines_per_revolution, "Lines per revolution, more or less")
-      ->check(CLI::NonNegativeNumber)
+      ->check(integer_from(0, 1'000'000'000))
       ->capture_default_str();
   verb->add_option("--extra-slots", options->tolerances.extra_slots, "Slots a line may be longer")
-      ->check(CLI::NonNegativeNumber)
+      ->check(integer_from(0, 1'000'000'000))
       ->capture_default_str();
   verb->add_option("--pitch-percent", options->pitch_percent, "Most the line pitch may change")->capture_default_str();
   verb->add_option("--diameter-um", options->diameter_um, "Most the diameter may change")->capture_default_str();
   verb->add_option("--most", options->tolerances.most_suggestions, "Suggestions at most")
-      ->check(CLI::Range(1, 1000))
+      ->check(integer_from(1, 1000))
       ->capture_default_str();
   verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
 }

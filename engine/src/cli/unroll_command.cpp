@@ -108,7 +108,9 @@ void add_unroll(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "unroll", "What one revolution exposes, as the picture it came from");
   const auto options = std::make_shared<Options>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
-  verb->add_option("--revolution", options->revolution, "Revolution, from 0")->required();
+  verb->add_option("--revolution", options->revolution, "Revolution, from 0")
+      ->required()
+      ->check(integer_from(0, kMostIndex));
   verb->add_option("-o,--output", options->output, "Bilevel TIFF to write")->required();
   verb->add_option("--compression", options->compression, "Of the TIFF")
       ->check(CLI::IsMember({"none", "packbits", "lzw", "deflate", "g4"}))

@@ -15,11 +15,32 @@ CLI::App* add_verb(CLI::App& app, Command& command, const std::string& name, con
 
 void add_work_options(CLI::App& verb, Command& command) {
   verb.add_option("--memory", command.memory_mib, "Budget for all buffers in MiB")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
+      ->check(integer_from(1, std::uint64_t{1} << 20))
       ->capture_default_str();
   verb.add_option("--threads", command.threads, "Workers; 0: one for each processor")
-      ->check(CLI::Range(0, 1024))
+      ->check(integer_from(0, 1024))
       ->capture_default_str();
+}
+
+CLI::Validator integer_from(std::int64_t least, std::uint64_t most) {
+  const std::string range = std::to_string(least) + " to " + std::to_string(most);
+  return CLI::Validator(
+      [least, most, range](std::string& text) {
+        constexpr std::size_t kMostDigits = 21;
+        const std::string digits = text.substr(text.find_first_not_of('-') == 1 ? 1 : 0);
+        const bool is_integer = !digits.empty() && digits.find_first_not_of("0123456789") == std::string::npos;
+        if (is_integer && text.size() <= kMostDigits && Integer(text) >= least && Integer(text) <= most) {
+          return std::string();
+        }
+        return "must be an integer from " + range + ", not \"" + text.substr(0, 40) + (text.size() > 40 ? "..." : "") +
+               "\"";
+      },
+      range, "integer");
+}
+
+Result<Rational> decimal_option(const std::string& option, const std::string& text) {
+  Result<Rational> value = parse_decimal(text);
+  return value ? value : Error{value.error().code, option + " " + value.error().message};
 }
 
 void print(const std::string& text) {

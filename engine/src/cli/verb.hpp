@@ -33,6 +33,13 @@ CLI::App* add_verb(CLI::App& app, Command& command, const std::string& name, con
 /// Adds --memory and --threads to a verb that works on images.
 void add_work_options(CLI::App& verb, Command& command);
 
+/// Refuses what is no integer from `least` to `most`. Without it an option takes "" for 0 and cuts a huge number.
+CLI::Validator integer_from(std::int64_t least, std::uint64_t most);
+inline constexpr std::uint64_t kMostIndex = std::uint64_t{1} << 62;  ///< for revolutions and lines, checked later
+
+/// The exact value of a decimal given to an option; an error names the option.
+Result<Rational> decimal_option(const std::string& option, const std::string& text);
+
 /// One text to standard output.
 void print(const std::string& text);
 /// One JSON document to standard output.

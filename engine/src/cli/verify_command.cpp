@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <set>
+#include <string_view>
 
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/job_file.hpp"
 #include "gravure/formats/plan_json.hpp"
-#include "gravure/pipeline/compile.hpp"
 #include "gravure/sync/make_plan.hpp"
 #include "gravure/twin/verify.hpp"
 #include "job_loader.hpp"
@@ -25,6 +27,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::string input;
   std::string images;
+  bool every_revolution = false;
 };
 
 /// The first revolution that does not expose the layer its job asks for.
@@ -56,9 +59,12 @@ Result<std::optional<std::string>> plan_contradiction(const ProgramHeader& heade
                   header.plan.ab.increment, header.plan.ab.prescaler, again.ab.increment, again.ab.prescaler));
 }
 
-/// Revolutions shown in the seam table: the first ones, then each about twice the one before, and the last.
-std::set<std::int64_t> shown_revolutions(std::int64_t revolutions) {
+/// Revolutions shown in the seam table: the first ones, then each about twice the one before, and the last; or all.
+std::set<std::int64_t> shown_revolutions(std::int64_t revolutions, bool every) {
   std::set<std::int64_t> shown;
+  for (std::int64_t r = 0; every && r < revolutions; ++r) {
+    shown.insert(shown.end(), r);
+  }
   for (const std::int64_t step : {1, 2, 5}) {
     for (std::int64_t at = step; at <= revolutions; at *= 10) {
       shown.insert(at - 1);
@@ -68,9 +74,9 @@ std::set<std::int64_t> shown_revolutions(std::int64_t revolutions) {
   return shown;
 }
 
-Json json_of(const VerifyReport& report, const ProgramHeader& header) {
+Json json_of(const VerifyReport& report, const ProgramHeader& header, bool every) {
   Json seam = Json::array();
-  for (const std::int64_t r : shown_revolutions(report.revolutions)) {
+  for (const std::int64_t r : shown_revolutions(report.revolutions, every)) {
     const SeamRow& row = report.seam[static_cast<std::size_t>(r)];
     seam.push_back({{"after_revolution", row.revolution},
                     {"drift_lines", json_ratio(row.drift_lines)},
@@ -108,7 +114,7 @@ Json json_of(const VerifyReport& report, const ProgramHeader& header) {
             {"worst", {{"revolution", report.axis_worst_revolution}, {"line", report.axis_worst_line}}}}}};
 }
 
-std::string text_of(const VerifyReport& report, const ProgramHeader& header) {
+std::string text_of(const VerifyReport& report, const ProgramHeader& header, bool every) {
   std::string text =
       fmt::format("{} revolutions, {} lines, {} ticks emulated; {} fires: {} of {} pixels ({:.2f} %)\n",
                   report.revolutions, report.lines, report.ticks, polarity_name(header.fires), report.fired_pixels,
@@ -117,7 +123,7 @@ std::string text_of(const VerifyReport& report, const ProgramHeader& header) {
     text += fmt::format("landed pixels that differ from the images: {}\n", report.wrong_pixels);
   }
   text += fmt::format("\n{:>16}  {:>12}  {:>10}\n", "after revolution", "seam um", "limit um");
-  for (const std::int64_t r : shown_revolutions(report.revolutions)) {
+  for (const std::int64_t r : shown_revolutions(report.revolutions, every)) {
     text += fmt::format("{:>16}  {:>12.6g}  {:>10g}\n", r, report.seam[static_cast<std::size_t>(r)].drift_um,
                         report.seam_limit_um);
   }
@@ -198,11 +204,19 @@ Result<int> verify_program(const std::string& path, const Options& options, cons
                     report.ab_step_um));
   }
   if (command.json) {
-    print_json(json_of(report, header));
+    print_json(json_of(report, header, options.every_revolution));
   } else {
-    print(text_of(report, header));
+    print(text_of(report, header, options.every_revolution));
   }
   return report.violations.empty() ? kDone : kLimitViolated;
+}
+
+/// By its name or, whatever its name, by its first bytes.
+bool is_program(const std::string& path) {
+  constexpr std::string_view kSignature = "gravure program\n";
+  std::array<char, kSignature.size()> begin = {};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return fs::path(path).extension() == ".grv" || std::string_view(begin.data(), begin.size()) == kSignature;
 }
 
 /// Removes the program that a job was compiled to for verification.
@@ -236,19 +250,7 @@ Result<int> verify_job(const Options& options, const Command& command) {
   const std::string path = folder.path() + "/job.grv";
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.input, files, true));
-  GRAVURE_TRY(Compilation made, prepare_compilation(loaded, path));
-  GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
-              create_grv(path, static_cast<std::int64_t>(made.header.layers.size()),
-                         loaded.plan.rotary.lines_per_revolution, made.header.line_bytes()));
-  {
-    ProgressBar bar("compile");
-    CompileOptions compile_options;
-    compile_options.memory_bytes = command.memory_bytes();
-    compile_options.threads = command.threads;
-    compile_options.cancel = &cancel_token();
-    compile_options.progress = &bar;
-    GRAVURE_CHECK(compile(std::move(made.header), made.stack, files, *sink, compile_options));
-  }
+  GRAVURE_CHECK(compile_job(loaded, files, path, {}, command));
   for (const std::string& warning : loaded.plan.warnings) {
     warn(warning);
   }
@@ -261,13 +263,14 @@ void add_verify(CLI::App& app, Command& command) {
   CLI::App* verb =
       add_verb(app, command, "verify", "Emulate a job or program, compare with its images, and judge the seam");
   const auto options = std::make_shared<Options>();
-  verb->add_option("JOB|PROGRAM", options->input, "Job file (.toml) or program file (.grv)")->required();
+  verb->add_option("JOB|PROGRAM", options->input, "Job file (TOML) or program file (.grv)")->required();
   verb->add_option("--images", options->images, "Folder with the images, where they are not at the job's paths");
+  verb->add_flag("--every-revolution", options->every_revolution, "List the seam after each revolution, not only some");
   add_work_options(*verb, command);
   verb->callback([&command, options] {
     command.run = [&command, options] {
-      const bool job = fs::path(options->input).extension() == ".toml";
-      return job ? verify_job(*options, command) : verify_program(options->input, *options, command);
+      return is_program(options->input) ? verify_program(options->input, *options, command)
+                                        : verify_job(*options, command);
     };
   });
 }

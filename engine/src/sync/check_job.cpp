@@ -26,7 +26,7 @@ void check_clocks(const Job& job, Violations& violations) {
 void check_scanner(const ScannerSettings& scanner, Violations& violations) {
   violations.check_positive("scanner.pixel_pitch_um", scanner.pixel_pitch_um, kMostMicrometres);
   violations.check_range("scanner.slots_per_microvector", scanner.slots_per_microvector, 1, kMostCount);
-  violations.check_range("scanner.turn_slots", scanner.turn_slots, 0, kMostCount);
+  violations.check_range("scanner.turn_slots", scanner.turn_slots, 0, kMostTurnSlots);
   violations.check_range("scanner.max_extra_slots", scanner.max_extra_slots, 0, kMostExtraSlots);
 }
 

@@ -10,7 +10,8 @@ namespace gravure::sync_plan {
 /// Largest number of slots, lines, pixels or encoder lines: beyond any machine, small enough for products of a few.
 inline constexpr std::int64_t kMostCount = 1'000'000'000;
 /// Each candidate costs a best pair of some microseconds.
-inline constexpr std::int64_t kMostExtraSlots = 1'000'000;
+inline constexpr std::int64_t kMostTurnSlots = 10'000'000;
+inline constexpr std::int64_t kMostExtraSlots = 100'000;
 
 /// Refuses values no plan can be computed from, each by itself, and keys that exclude each other.
 void check_fields(const Job& job, std::int64_t pixels_per_line, std::int64_t revolutions, Violations& violations);

@@ -146,11 +146,12 @@ std::string what_would_fit(const Job& job, const Plan& plan, std::int64_t slots)
   const Integer least_slots =
       ceil_of(excess * Rational(slots) / Rational(plan.line.slots_per_microvector)) * plan.line.slots_per_microvector;
   text += "a rotary.gear ratio of at most " +
-          number_text(ratio(job.rotary.gear_encoder_turns, job.rotary.gear_workpiece_turns) / excess) +
-          ", lines of at least " + to_string(least_slots) +
-          " slots (scanner.turn_slots >= " + to_string(Integer(least_slots - plan.line.pixels)) +
-          ") or laser.pulse_divider >= " + to_string(ceil_of(excess * Rational(job.laser.pulse_divider))) +
-          " would fit";
+          number_text(ratio(job.rotary.gear_encoder_turns, job.rotary.gear_workpiece_turns) / excess);
+  if (least_slots - plan.line.pixels <= kMostTurnSlots) {
+    text += ", lines of at least " + to_string(least_slots) +
+            " slots (scanner.turn_slots >= " + to_string(Integer(least_slots - plan.line.pixels)) + ")";
+  }
+  text += " or laser.pulse_divider >= " + to_string(ceil_of(excess * Rational(job.laser.pulse_divider))) + " would fit";
   return text;
 }
 
@@ -271,7 +272,7 @@ std::int64_t check_line(const Job& job, std::int64_t pixels_per_line, Plan& plan
 }  // namespace
 
 Result<Plan> make_plan(const Job& job, std::int64_t pixels_per_line, std::int64_t revolutions) {
-  Violations violations;
+  Violations violations(job);
   check_fields(job, pixels_per_line, revolutions, violations);
   Plan plan;
   plan.title = job.title;

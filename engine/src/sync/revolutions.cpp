@@ -26,23 +26,27 @@ Result<std::int64_t> resolve_revolutions(const Job& job, std::optional<std::int6
     layers = image.levels;
   }
   if (layers && *layers < 1) {
-    return Error{ErrorCode::bad_argument, "image.files: there is no layer in them; at least 1 is needed"};
+    return Error{ErrorCode::bad_argument,
+                 job.place_of("image.files") + "image.files: there is no layer in them; at least 1 is needed"};
   }
   if (!layers && !image.revolutions) {
-    return Error{ErrorCode::bad_argument,
-                 "image.revolutions is missing: one per layer is the default, and the number of layers is not known "
-                 "without the images; give image.revolutions, or the images"};
+    return Error{
+        ErrorCode::bad_argument,
+        job.place_of("image") +
+            "image.revolutions is missing: one per layer is the default, and the number of layers is not known "
+            "without the images; give image.revolutions, or the images"};
   }
   const std::int64_t revolutions = image.revolutions.value_or(layers.value_or(0));
   if (revolutions < 1) {
-    return Error{ErrorCode::out_of_range,
-                 "image.revolutions = " + std::to_string(revolutions) + ": must be at least 1"};
+    return Error{ErrorCode::out_of_range, job.place_of("image.revolutions") + "image.revolutions = " +
+                                              std::to_string(revolutions) + ": must be at least 1"};
   }
   if (layers && image.order == LayerOrder::sequence && revolutions != *layers) {
-    return Error{ErrorCode::bad_argument, "image.revolutions = " + std::to_string(revolutions) +
-                                              ": image.order = \"sequence\" needs as many as " + "there are layers, " +
-                                              std::to_string(*layers) + "; set image.revolutions = " +
-                                              std::to_string(*layers) + ", or image.order = \"cycle\" or \"hold\""};
+    return Error{ErrorCode::bad_argument,
+                 job.place_of("image.revolutions") + "image.revolutions = " + std::to_string(revolutions) +
+                     ": image.order = \"sequence\" needs as many as " + "there are layers, " + std::to_string(*layers) +
+                     "; set image.revolutions = " + std::to_string(*layers) +
+                     ", or image.order = \"cycle\" or \"hold\""};
   }
   return revolutions;
 }

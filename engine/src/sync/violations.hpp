@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "gravure/core/error.hpp"
+#include "gravure/core/job.hpp"
 #include "text.hpp"
 
 namespace gravure::sync_plan {
@@ -13,9 +14,11 @@ namespace gravure::sync_plan {
 /// Collects what is wrong with a job, so that one message can say it all, each violation on a line of its own.
 class Violations {
  public:
+  explicit Violations(const Job& job) : job_(job) {}
+
   /// A value that is in order by itself but not with others, or not within reach.
   void conflict(ErrorCode code, std::string_view key, const std::string& value, const std::string& problem) {
-    add(code, std::string(key) + " = " + value + ": " + problem);
+    add(code, key, " = " + value + ": " + problem);
   }
   /// A value nothing can be computed from: checks that need it are left out (see sound()), or it would be complained
   /// about twice.
@@ -25,7 +28,7 @@ class Violations {
   }
   /// A key whose absence (or double) is the violation.
   void refuse_missing(std::string_view key, const std::string& problem) {
-    add(ErrorCode::bad_argument, std::string(key) + " " + problem);
+    add(ErrorCode::bad_argument, key, " " + problem);
     refused_.insert(std::string(key));
   }
   /// Refuses a value outside least..most.
@@ -56,11 +59,12 @@ class Violations {
   Error error() const { return {code_, text_}; }
 
  private:
-  void add(ErrorCode code, const std::string& line) {
+  void add(ErrorCode code, std::string_view key, const std::string& rest) {
     code_ = text_.empty() ? code : code_;
-    text_ += text_.empty() ? line : "\n" + line;
+    text_ += (text_.empty() ? "" : "\n") + job_.place_of(key) + std::string(key) + rest;
   }
 
+  const Job& job_;
   ErrorCode code_ = ErrorCode::bad_argument;
   std::string text_;
   std::set<std::string> refused_;

@@ -56,18 +56,20 @@ Result<void> check_alike(const std::vector<StackImage>& images) {
 }
 
 /// Grey layers become bilevel by the threshold; without one nobody said what is white.
-Result<void> check_threshold(const ImageSettings& settings, ImageStack& stack) {
+Result<void> check_threshold(const Job& job, ImageStack& stack) {
+  const ImageSettings& settings = job.image;
   const StackImage& first = stack.images.front();
   const SampleType samples = first.info.samples;
   if (samples == SampleType::bit) {
     if (settings.threshold) {
-      stack.warnings.push_back("[image] threshold = " + std::to_string(*settings.threshold) +
+      stack.warnings.push_back(job.place_of("image.threshold") +
+                               "[image] threshold = " + std::to_string(*settings.threshold) +
                                ": the layers are bilevel already, so it does nothing; leave it out");
     }
     return {};
   }
   if (samples == SampleType::f32) {
-    return Error{ErrorCode::bad_argument, place(first) +
+    return Error{ErrorCode::bad_argument, job.place_of("image.files") + place(first) +
                                               "floating-point samples cannot be layers: save them as 1, 8 or "
                                               "16 bits, or give the image as [image] depth_map"};
   }
@@ -75,32 +77,61 @@ Result<void> check_threshold(const ImageSettings& settings, ImageStack& stack) {
   const std::string range = " (1 to " + std::to_string(largest) + "; a sample >= threshold is white; the middle is " +
                             std::to_string((largest + 1) / 2) + ")";
   if (!settings.threshold) {
-    return Error{ErrorCode::bad_argument,
-                 place(first) + samples_name(samples) + " layers need [image] threshold" + range};
+    return Error{ErrorCode::bad_argument, job.place_of("image") + place(first) + samples_name(samples) +
+                                              " layers need [image] threshold" + range};
   }
   if (*settings.threshold < 1 || *settings.threshold > largest) {
-    return Error{ErrorCode::out_of_range, "[image] threshold = " + std::to_string(*settings.threshold) +
+    return Error{ErrorCode::out_of_range, job.place_of("image.threshold") +
+                                              "[image] threshold = " + std::to_string(*settings.threshold) +
                                               ": out of range for " + samples_name(samples) + " layers" + range};
   }
   return {};
 }
 
-Result<void> check_depth_map(const ImageSettings& settings, ImageStack& stack) {
+/// The samples that mean no and every pulse must be samples of this map, and two different ones.
+Result<void> check_depth_range(const Job& job, const StackImage& map) {
+  const bool floats = map.info.samples == SampleType::f32;
+  const Rational largest = floats ? 1 : map.info.samples == SampleType::u8 ? 255 : 65535;
+  const auto check = [&](const char* key, const std::optional<Rational>& value) -> Result<void> {
+    if (value && !floats && (denominator_of(*value) != 1 || *value < 0 || *value > largest)) {
+      return Error{ErrorCode::out_of_range, job.place_of(std::string("image.") + key) + "[image] " + key + " = " +
+                                                to_decimal_string(*value) + ": must be an integer from 0 to " +
+                                                to_string(largest) + ", a sample of this " +
+                                                samples_name(map.info.samples) + " map (" + map.path + ")"};
+    }
+    return {};
+  };
+  GRAVURE_CHECK(check("depth_min", job.image.depth_min));
+  GRAVURE_CHECK(check("depth_max", job.image.depth_max));
+  const Rational low = job.image.depth_min.value_or(0);
+  if (low == job.image.depth_max.value_or(largest)) {
+    return Error{ErrorCode::bad_argument, job.place_of("image.depth_min") + "[image] depth_min = depth_max = " +
+                                              to_decimal_string(low) + ": a depth map needs two different ends"};
+  }
+  return {};
+}
+
+Result<void> check_depth_map(const Job& job, ImageStack& stack) {
+  const ImageSettings& settings = job.image;
+  const std::string at = job.place_of("image.depth_map");
   const StackImage& map = stack.images.front();
   if (stack.images.size() != 1) {
-    return Error{ErrorCode::bad_argument, map.path + ": [image] depth_map has " + std::to_string(stack.images.size()) +
+    return Error{ErrorCode::bad_argument, at + map.path + ": [image] depth_map has " +
+                                              std::to_string(stack.images.size()) +
                                               " pages: a depth map is one page; split the file"};
   }
   if (map.info.samples == SampleType::bit) {
     return Error{ErrorCode::bad_argument,
-                 place(map) +
+                 at + place(map) +
                      "[image] depth_map is bilevel: a depth map has 8, 16 or floating-point bits a sample; give "
                      "a bilevel image as [image] files"};
   }
   if (!settings.levels || *settings.levels < 1) {
     return Error{ErrorCode::bad_argument,
-                 "[image] levels: missing or below 1: a depth map needs the number of layers it is sliced into"};
+                 job.place_of("image.levels") +
+                     "[image] levels: missing or below 1: a depth map needs the number of layers it is sliced into"};
   }
+  GRAVURE_CHECK(check_depth_range(job, map));
   stack.layers = *settings.levels;
   return {};
 }
@@ -117,20 +148,25 @@ Result<ImageStack> scan_stack(const Job& job, const ImageOpener& opener) {
   const std::vector<std::string> patterns =
       stack.depth_map ? std::vector<std::string>{*job.image.depth_map} : job.image.files;
   if (patterns.empty()) {
-    return Error{ErrorCode::bad_argument, "[image] files: no image given; name files or a depth_map"};
+    return Error{ErrorCode::bad_argument,
+                 job.place_of("image") + "[image] files: no image given; name files or a depth_map"};
   }
   const std::string folder = std::filesystem::path(job.path).parent_path().string();
-  GRAVURE_TRY(const std::vector<std::string> files, expand_patterns(folder, patterns));
-  for (const std::string& path : files) {
+  const Result<std::vector<std::string>> files = expand_patterns(folder, patterns);
+  if (!files) {
+    return Error{files.error().code,
+                 job.place_of(stack.depth_map ? "image.depth_map" : "image.files") + files.error().message};
+  }
+  for (const std::string& path : files.value()) {
     GRAVURE_CHECK(add_pages(path, opener, stack.images));
   }
   stack.layers = static_cast<std::int64_t>(stack.images.size());
   if (stack.depth_map) {
-    GRAVURE_CHECK(check_depth_map(job.image, stack));
+    GRAVURE_CHECK(check_depth_map(job, stack));
     return stack;
   }
   GRAVURE_CHECK(check_alike(stack.images));
-  GRAVURE_CHECK(check_threshold(job.image, stack));
+  GRAVURE_CHECK(check_threshold(job, stack));
   return stack;
 }
 

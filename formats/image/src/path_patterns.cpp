@@ -1,6 +1,9 @@
+#include <dirent.h>
 #include <glob.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <set>
 
@@ -43,34 +46,63 @@ std::string escape_for_glob(const std::string& text) {
   return escaped;
 }
 
+/// glob() that gives up on a pattern such as "/*/*/*/*/*" before it has walked the whole disk.
 class Glob {
  public:
-  explicit Glob(const std::string& pattern) : status_(::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found_)) {}
+  explicit Glob(const std::string& pattern) {
+    names_left = kMostNames;
+    found_.gl_opendir = [](const char* path) -> void* { return ::opendir(path); };
+    found_.gl_readdir = [](void* folder) { return names_left-- > 0 ? ::readdir(static_cast<DIR*>(folder)) : nullptr; };
+    found_.gl_closedir = [](void* folder) { static_cast<void>(::closedir(static_cast<DIR*>(folder))); };
+    found_.gl_stat = ::stat;
+    found_.gl_lstat = ::lstat;
+    status_ = ::glob(pattern.c_str(), GLOB_NOSORT | GLOB_ALTDIRFUNC, nullptr, &found_);
+  }
   Glob(const Glob&) = delete;
   Glob& operator=(const Glob&) = delete;
   ~Glob() { ::globfree(&found_); }
+  bool gave_up() const { return names_left < 0; }
   std::vector<std::string> paths() const {
     return status_ == 0 ? std::vector<std::string>(found_.gl_pathv, found_.gl_pathv + found_.gl_pathc)
                         : std::vector<std::string>();
   }
 
+  static constexpr std::int64_t kMostNames = 1'000'000;
+
  private:
+  static thread_local std::int64_t names_left;  // glob() hands no context to its callbacks
   ::glob_t found_ = {};
   int status_;
 };
 
-std::vector<std::string> matches_of(const std::string& folder, const std::string& pattern) {
+thread_local std::int64_t Glob::names_left = 0;
+
+/// What a pattern matches, without folders; the error says what is wrong where that is nothing.
+Result<std::vector<std::string>> matches_of(const std::string& folder, const std::string& pattern) {
   const bool absolute = !pattern.empty() && pattern.front() == '/';
   const std::string prefix = absolute || folder.empty() ? "" : folder + (folder.back() == '/' ? "" : "/");
+  const std::string shown = "\"" + pattern + "\" ";
   std::error_code unknown;
   if (std::filesystem::is_regular_file(prefix + pattern, unknown)) {
-    return {prefix + pattern};  // a name that happens to hold * ? or [ is that name
+    return std::vector<std::string>{prefix + pattern};  // a name that happens to hold * ? or [ is that name
   }
-  std::vector<std::string> paths = Glob(escape_for_glob(prefix) + pattern).paths();
+  const Glob glob(escape_for_glob(prefix) + pattern);
+  if (glob.gave_up()) {
+    return Error{ErrorCode::bad_file, shown + "looks through more than " + std::to_string(Glob::kMostNames) +
+                                          " names: name the folder of the images"};
+  }
+  std::vector<std::string> paths = glob.paths();
+  const bool any = !paths.empty();
   std::erase_if(paths, [](const std::string& path) {
     std::error_code ignored;
     return std::filesystem::is_directory(path, ignored);
   });
+  if (paths.empty()) {
+    const std::string where = folder.empty() ? "." : folder;
+    return Error{ErrorCode::bad_file,
+                 any ? shown + "matches only folders: name the files in them, such as \"" + pattern + "/*.tif\""
+                     : shown + "matches no file in " + where + ": patterns are relative to the job file"};
+  }
   std::sort(paths.begin(), paths.end(), natural_less);
   return paths;
 }
@@ -102,12 +134,12 @@ Result<std::vector<std::string>> expand_patterns(const std::string& folder, cons
   std::set<std::string> seen;
   std::string unmatched;
   for (const std::string& pattern : patterns) {
-    const std::vector<std::string> matches = matches_of(folder, pattern);
-    if (matches.empty()) {
-      unmatched += (unmatched.empty() ? "" : "\n") + std::string("\"") + pattern + "\" matches no file in " +
-                   (folder.empty() ? "." : folder) + ": patterns are relative to the job file";
+    const Result<std::vector<std::string>> matches = matches_of(folder, pattern);
+    if (!matches) {
+      unmatched += (unmatched.empty() ? "" : "\n") + matches.error().message;
+      continue;
     }
-    for (const std::string& path : matches) {
+    for (const std::string& path : matches.value()) {
       if (seen.insert(path).second) {
         files.push_back(path);
       }

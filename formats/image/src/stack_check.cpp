@@ -99,13 +99,16 @@ Result<void> check_revolutions(const Plan& plan, const Job& job, const ImageStac
                                std::vector<std::string>& warnings) {
   const std::int64_t revolutions = plan.job.revolutions;
   if (job.image.order == LayerOrder::sequence && revolutions != stack.layers) {
-    return Error{ErrorCode::bad_argument,
-                 fmt::format("[image] revolutions = {} but there are {} layers: order = \"sequence\" cuts layer r on "
-                             "revolution r; set revolutions = {}, or order = \"cycle\" or \"hold\" to repeat layers",
-                             revolutions, stack.layers, stack.layers)};
+    return Error{
+        ErrorCode::bad_argument,
+        job.place_of("image.revolutions") +
+            fmt::format("[image] revolutions = {} but there are {} layers: order = \"sequence\" cuts layer r on "
+                        "revolution r; set revolutions = {}, or order = \"cycle\" or \"hold\" to repeat layers",
+                        revolutions, stack.layers, stack.layers)};
   }
   if (revolutions < stack.layers) {
-    warnings.push_back(fmt::format("[image] revolutions = {}: the last {} of {} layers are never cut", revolutions,
+    warnings.push_back(job.place_of("image.revolutions") +
+                       fmt::format("[image] revolutions = {}: the last {} of {} layers are never cut", revolutions,
                                    stack.layers - revolutions, stack.layers));
   }
   return {};

@@ -88,7 +88,9 @@ class Reader {
     } else if (!is_known) {
       violations_.add(section.at, bracketed(section.name) + ": unknown section" + section_advice(section.name));
     } else {
+      job_.places.emplace(section.name, section.at);
       for (const Entry& entry : section.entries) {
+        job_.places.emplace(section.name + "." + entry.key, entry.at);
         read_entry(section, entry);
       }
     }

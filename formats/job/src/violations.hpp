@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -8,15 +7,11 @@
 #include <vector>
 
 #include "gravure/core/error.hpp"
+#include "gravure/core/job.hpp"
 
 namespace gravure::job_file {
 
-/// A place in the job file; both count from 1, columns in characters.
-struct Location {
-  std::uint32_t line = 0;
-  std::uint32_t column = 0;
-  auto operator<=>(const Location&) const = default;
-};
+using Location = TextPlace;
 
 /// Gathers what is wrong with a file, so that one run tells all of it.
 class Violations {

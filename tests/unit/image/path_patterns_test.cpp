@@ -101,5 +101,24 @@ TEST(PathPatterns, NameEachPatternThatMatchesNothing) {
   EXPECT_EQ(files.error().message.find("a.tif\""), std::string::npos) << files.error().message;
 }
 
+TEST(PathPatterns, SayWhenAPatternMatchesOnlyFolders) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "layers");
+  const auto files = expand_patterns(folder.path(), {"lay*"});
+  ASSERT_FALSE(files);
+  EXPECT_NE(files.error().message.find("only folders"), std::string::npos) << files.error().message;
+}
+
+TEST(PathPatterns, GiveUpOnAPatternThatWalksTheWholeDisk) {
+  const TempFolder folder;
+  // Each link leads back to the folder, so every "*" multiplies what is walked by 64: 64^4 names.
+  for (int i = 0; i < 64; ++i) {
+    std::filesystem::create_directory_symlink(".", folder / ("loop" + std::to_string(i)));
+  }
+  const auto files = expand_patterns(folder.path(), {"*/*/*/*/*.tif"});
+  ASSERT_FALSE(files);
+  EXPECT_NE(files.error().message.find("more than 1000000 names"), std::string::npos) << files.error().message;
+}
+
 }  // namespace
 }  // namespace gravure::test

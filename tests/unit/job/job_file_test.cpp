@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -160,6 +161,21 @@ TEST(Job, TakesDocumentedDefaultsForWhatIsNotThere) {
   EXPECT_EQ(job.image.lines_along, LinesAlong::rows);
   EXPECT_FALSE(job.image.revolutions);
   EXPECT_EQ(job.image.order, LayerOrder::sequence);
+}
+
+TEST(Job, KnowsWhereEachKeyStands) {
+  const std::string text = sample_job();
+  const Result<Job> result = parse_job(text, "roller/job.toml");
+  ASSERT_TRUE(result) << result.error().message;
+  const Job& job = result.value();
+  const auto line_of = [&](const std::string& what) {
+    return std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<long>(text.find(what)), '\n'));
+  };
+  EXPECT_EQ(job.place_of("laser.seed_hz"), "roller/job.toml:" + line_of("seed_hz") + ":1: ");
+  EXPECT_EQ(job.place_of("limits.seam_um"), "roller/job.toml:" + line_of("seam_um") + ":1: ");
+  EXPECT_EQ(job.place_of("image.pixels_per_line"), "roller/job.toml:" + line_of("[image]") + ":1: ")
+      << "left out: where its section stands";
+  EXPECT_EQ(Job().place_of("laser.seed_hz"), "") << "a job made in memory has no places";
 }
 
 TEST(Job, MayBePlannedWithoutImages) {

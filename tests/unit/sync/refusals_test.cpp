@@ -180,6 +180,19 @@ TEST(MakePlan, SaysAllThatIsWrongEachOnALine) {
   }
 }
 
+TEST(MakePlan, SaysWhereInTheFileEachWrongKeyStands) {
+  Job job = roller_job();
+  job.path = "roller/job.toml";
+  job.places = {{"laser", {4, 1}}, {"laser.pulse_divider", {6, 1}}, {"limits", {40, 1}}};
+  job.laser.pulse_divider = 4;
+  job.limits.seam_um = 0;
+  const Result<Plan> plan = make_plan(job, 3500, 10);
+  ASSERT_FALSE(plan);
+  EXPECT_NE(plan.error().message.find("roller/job.toml:40:1: limits.seam_um = 0: "), std::string::npos);
+  EXPECT_NE(plan.error().message.find("\nroller/job.toml:6:1: laser.pulse_divider = 4: "), std::string::npos)
+      << plan.error().message;
+}
+
 /// What a refusal says would fit does fit, and one step less does not.
 TEST(MakePlan, NamesWhatWouldFit) {
   Job job = roller_job();

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gravure/core/exact.hpp"
@@ -70,6 +73,13 @@ struct Limits {
   Rational seam_um = 0;
 };
 
+/// A place in a text file; both count from 1, columns in characters.
+struct TextPlace {
+  std::uint32_t line = 0;
+  std::uint32_t column = 0;
+  auto operator<=>(const TextPlace&) const = default;
+};
+
 struct Job {
   std::string title;
   Mode mode = Mode::rotary;
@@ -82,6 +92,12 @@ struct Job {
 
   std::string path;  ///< the job file; image patterns are relative to its folder
   std::string text;  ///< its bytes, stored in the program
+  /// Where each section ("rotary") and each key ("rotary.gear") stands in the file; empty for a job made otherwise.
+  std::map<std::string, TextPlace, std::less<>> places;
+
+  /// "job.toml:12:8: ", how a message about `key` begins. A key that was left out stands where its section does; ""
+  /// where nothing is known.
+  std::string place_of(std::string_view key) const;
 };
 
 }  // namespace gravure

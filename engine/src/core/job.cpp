@@ -1,0 +1,16 @@
+#include "gravure/core/job.hpp"
+
+namespace gravure {
+
+std::string Job::place_of(std::string_view key) const {
+  auto found = places.find(key);
+  if (found == places.end()) {
+    found = places.find(key.substr(0, key.find('.')));
+  }
+  if (found == places.end()) {
+    return path.empty() ? "" : path + ": ";
+  }
+  return path + ":" + std::to_string(found->second.line) + ":" + std::to_string(found->second.column) + ": ";
+}
+
+}  // namespace gravure
