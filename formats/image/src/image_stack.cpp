@@ -136,6 +136,26 @@ Result<void> check_depth_map(const Job& job, ImageStack& stack) {
   return {};
 }
 
+/// G3 and G4 spell out every run of a line: dithered pictures grow by them, and take libtiff many times longer to
+/// decode than any other codec.
+void warn_of_fax(ImageStack& stack) {
+  const StackImage* first = nullptr;
+  std::int64_t count = 0;
+  for (const StackImage& image : stack.images) {
+    if (image.info.fax_larger_than_raw) {
+      first = first == nullptr ? &image : first;
+      ++count;
+    }
+  }
+  if (first == nullptr) {
+    return;
+  }
+  const std::string others = count > 1 ? " (and " + std::to_string(count - 1) + " more)" : "";
+  stack.warnings.push_back(place(*first) + "its G3 or G4 data are larger than the bits they stand for" + others +
+                           ", as those of dithered pictures are: reading them is slow; rewrite such files with "
+                           "`tiffcp -c zip` or `tiffcp -c zstd`");
+}
+
 }  // namespace
 
 ScanSize scan_size(const ImageSettings& settings, std::int64_t width, std::int64_t height) {
@@ -167,6 +187,7 @@ Result<ImageStack> scan_stack(const Job& job, const ImageOpener& opener) {
   }
   GRAVURE_CHECK(check_alike(stack.images));
   GRAVURE_CHECK(check_threshold(job, stack));
+  warn_of_fax(stack);
   return stack;
 }
 

@@ -57,6 +57,7 @@ Result<HeaderFacts> read_bmp_header(const std::string& path) {
                               std::to_string(wanted) + " bytes, but has " + std::to_string(file.size()) +
                               ": the file is truncated; copy it again");
   }
+  facts.decoder_bytes = kLibraryBytes + 8 * facts.width;  // a row of three channels, twice
   facts.x_dots_per_mm = dots_per_mm(head, 38);
   facts.y_dots_per_mm = dots_per_mm(head, 42);
   if (facts.bits == 1) {

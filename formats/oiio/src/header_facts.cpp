@@ -57,6 +57,21 @@ Result<void> check_size(const std::string& path, std::int64_t width, std::int64_
   return {};
 }
 
+namespace {
+
+/// What OpenImageIO or libtiff copy beside the codec's own memory.
+std::int64_t tiff_scratch_bytes(const TiffPageInfo& info, std::int64_t row_bytes) {
+  const std::int64_t block = info.rows_per_block * row_bytes;
+  if (info.tiled || block <= kMaxStripBytes) {
+    return block + info.largest_block_bytes;
+  }
+  // Larger strips run row by row. libtiff holds a strip as it is stored; one that is not compressed it takes in pieces
+  // if there is no other.
+  return row_bytes + (info.compressed() || info.blocks == 1 ? 0 : info.largest_block_bytes);
+}
+
+}  // namespace
+
 Result<HeaderFacts> read_tiff_header(const BilevelTiffOpener& tiff, const std::string& path, std::int64_t page) {
   GRAVURE_TRY(const TiffPageInfo info, tiff.read_page_info(path, page));
   const std::string place = path + ": page " + std::to_string(page);
@@ -81,13 +96,15 @@ Result<HeaderFacts> read_tiff_header(const BilevelTiffOpener& tiff, const std::s
   facts.bits = info.bits_per_sample;
   facts.tiled = info.tiled;
   const std::int64_t row_bytes = (info.width * info.bits_per_sample + 7) / 8;
-  const bool small = info.rows_per_block <= kMaxBlockBytes / row_bytes;
-  if (info.tiled && !small) {
+  if (info.tiled && info.rows_per_block > kMaxBlockBytes / row_bytes) {
     return bad_file(place, "one row of tiles is larger than the " + std::to_string(kMaxBlockBytes) +
                                " bytes allowed; rewrite it in strips with `tiffcp -s -r 64`");
   }
-  facts.rows_per_block = small ? info.rows_per_block : 1;
-  facts.random_access = small || !info.compressed;
+  const bool small = info.rows_per_block <= kMaxStripBytes / row_bytes && info.largest_block_bytes <= kMaxStripBytes;
+  facts.rows_per_block = small || info.tiled ? info.rows_per_block : 1;
+  facts.stored_in_strips = small && !info.tiled;
+  facts.random_access = small || info.tiled || !info.compressed();
+  facts.decoder_bytes = kLibraryBytes + info.codec_bytes() + tiff_scratch_bytes(info, row_bytes);
   facts.x_dots_per_mm = info.x_dots_per_mm;
   facts.y_dots_per_mm = info.y_dots_per_mm;
   return facts;

@@ -14,9 +14,11 @@ namespace gravure::oiio {
 
 /// Limits of what goes through OpenImageIO, checked before it sees the file.
 inline constexpr std::int64_t kMaxRowBytes = std::int64_t{64} << 20;
-inline constexpr std::int64_t kMaxBlockBytes = std::int64_t{64} << 20;
-inline constexpr std::int64_t kMaxPngSide = 1'000'000;               ///< libpng's own
-inline constexpr std::int64_t kMaxExrWidth = std::int64_t{1} << 18;  ///< OpenEXR decodes up to 256 rows at once
+inline constexpr std::int64_t kMaxBlockBytes = std::int64_t{64} << 20;  ///< a row of tiles
+inline constexpr std::int64_t kMaxStripBytes = std::int64_t{16} << 20;  ///< a strip that is decoded in one go
+inline constexpr std::int64_t kLibraryBytes = std::int64_t{1} << 20;    ///< an open file: handles, codec state
+inline constexpr std::int64_t kMaxPngSide = 1'000'000;                  ///< libpng's own
+inline constexpr std::int64_t kMaxExrWidth = std::int64_t{1} << 18;     ///< OpenEXR decodes up to 256 rows at once
 
 /// What the file itself says of one page, read and checked by our own small parsers: some of the libraries behind
 /// OpenImageIO allocate what a header claims before they look whether the file can hold it, some print.
@@ -26,8 +28,10 @@ struct HeaderFacts {
   int bits = 0;                     ///< a sample, as stored: 1, 8, 16 or 32
   std::int64_t rows_per_block = 1;  ///< strip or tile height
   bool tiled = false;
+  bool stored_in_strips = false;  ///< small ones (TIFF): each is decoded whole
   bool random_access = true;
-  bool three_channels = false;  ///< bilevel BMP: OpenImageIO makes R = G = B of it
+  std::int64_t decoder_bytes = 0;  ///< OpenImageIO and the library behind it hold so much at most
+  bool three_channels = false;     ///< bilevel BMP: OpenImageIO makes R = G = B of it
   std::optional<double> x_dots_per_mm;
   std::optional<double> y_dots_per_mm;
 };

@@ -68,6 +68,15 @@ std::optional<double> dots_per_mm(const OIIO::ImageSpec& spec, const char* name)
   return static_cast<double>(dots) / unit_mm;
 }
 
+/// Rows that OpenEXR decodes at once.
+std::int64_t exr_chunk_rows(const OIIO::ImageSpec& spec) {
+  const std::string codec(spec.get_string_attribute("compression", "none"));
+  return codec == "none" || codec == "rle" || codec == "zips" ? 1
+         : codec == "zip" || codec == "pxr24"                 ? 16
+         : codec == "piz" || codec.rfind("b44", 0) == 0       ? 32
+                                                              : 256;
+}
+
 /// OpenEXR's facts come from OpenImageIO, once the header was found harmless; check_exr_header() saw every part.
 HeaderFacts exr_facts(const OIIO::ImageSpec& spec) {
   HeaderFacts facts;
@@ -75,8 +84,12 @@ HeaderFacts exr_facts(const OIIO::ImageSpec& spec) {
   facts.height = spec.height;
   facts.bits = static_cast<int>(spec.format.size()) * 8;
   facts.tiled = spec.tile_width > 0;
-  // Scan lines come in chunks of up to 32 rows for all codecs but DWAB.
-  facts.rows_per_block = facts.tiled ? spec.tile_height : 32;
+  facts.rows_per_block = facts.tiled ? spec.tile_height : exr_chunk_rows(spec);
+  // A chunk as stored, as the codec turns it over, as decoded: four times, eight for the cosine codecs; a row of tiles
+  // once more on its way to us.
+  const std::int64_t width = facts.tiled ? std::int64_t{spec.tile_width} : facts.width;
+  const std::int64_t chunk = facts.rows_per_block * width * 4 * (facts.rows_per_block == 256 ? 8 : 4);
+  facts.decoder_bytes = kLibraryBytes + chunk + (facts.tiled ? facts.rows_per_block * facts.width * 4 : 0);
   return facts;
 }
 
@@ -155,6 +168,7 @@ Result<void> check_geometry(const std::string& where, const OIIO::ImageSpec& spe
 OiioOpener::OiioOpener() {
   // Sizes are checked against the file itself (header_facts.hpp); this limit would refuse honest large rollers.
   OIIO::attribute("limits:imagesize_MB", std::numeric_limits<int>::max());
+  OIIO::attribute("exr_threads", -1);  // none of its own: the caller has workers, and each thread holds its own rows
 }
 
 Result<std::int64_t> OiioOpener::count_pages(const std::string& path) const {
@@ -213,6 +227,7 @@ Result<std::unique_ptr<ImageSource>> OiioOpener::open_unguarded(const std::strin
   info.samples = samples;
   info.rows_per_block = std::min(facts.rows_per_block, facts.height);
   info.random_access = facts.random_access;
+  info.decoder_bytes = facts.decoder_bytes + OiioSource::buffer_bytes(info, facts);
   info.x_dots_per_mm = facts.x_dots_per_mm ? facts.x_dots_per_mm : dots_per_mm(spec, "XResolution");
   info.y_dots_per_mm = facts.y_dots_per_mm ? facts.y_dots_per_mm : dots_per_mm(spec, "YResolution");
   return std::unique_ptr<ImageSource>(new OiioSource(std::move(input), std::move(info), facts));

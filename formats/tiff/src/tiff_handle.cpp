@@ -22,9 +22,13 @@ int on_error(TIFF* /*tiff*/, void* user_data, const char* /*module*/, const char
 }
 
 int on_warning(TIFF* /*tiff*/, void* user_data, const char* /*module*/, const char* format, va_list arguments) {
+  auto& messages = *static_cast<TiffMessages*>(user_data);
+  if (std::strstr(format, "StripByteCounts") != nullptr) {
+    (std::strstr(format, "missing") != nullptr ? messages.sizes_missing : messages.sizes_wrong) = true;
+  }
   // Says something of the writer's age, nothing of the data.
   if (std::strstr(format, "ld-style LZW") == nullptr) {
-    keep_first(static_cast<TiffMessages*>(user_data)->warning, format, arguments);
+    keep_first(messages.warning, format, arguments);
   }
   return 1;
 }

@@ -14,6 +14,8 @@ namespace gravure {
 struct TiffMessages {
   std::array<char, 256> error{};
   std::array<char, 256> warning{};
+  bool sizes_missing = false;  ///< the page does not say how long its strips or tiles are: libtiff guessed
+  bool sizes_wrong = false;    ///< or says something impossible
 
   void clear() { error[0] = warning[0] = '\0'; }
   bool any() const { return error[0] != '\0' || warning[0] != '\0'; }

@@ -63,12 +63,15 @@ Result<void> read_layout(const TiffHandle& handle, const std::string& place, Tif
     return refused(
         place, "compression " + std::to_string(compression) + " is not known here; rewrite it with `tiffcp -c zip`");
   }
-  info.compressed = compression != COMPRESSION_NONE;
+  info.compression = compression;
+  info.lowest_bit_first = field_or_default<std::uint16_t>(handle, TIFFTAG_FILLORDER) == FILLORDER_LSB2MSB;
   return {};
 }
 
 Result<void> read_meaning(const TiffHandle& handle, const std::string& place, TiffPageInfo& info) {
-  const auto orientation = field_or_default<std::uint16_t>(handle, TIFFTAG_ORIENTATION);
+  const TiffRawTags raw = read_raw_tags(TIFFFileno(handle.get()), TIFFCurrentDirOffset(handle.get()));
+  const std::uint64_t orientation =
+      raw.orientation.value_or(field_or_default<std::uint16_t>(handle, TIFFTAG_ORIENTATION));
   if (orientation != ORIENTATION_TOPLEFT) {
     return refused(place, "orientation tag " + std::to_string(orientation) +
                               ": only 1 (first row on top, first pixel left) is read, since turning a picture silently "
@@ -82,7 +85,7 @@ Result<void> read_meaning(const TiffHandle& handle, const std::string& place, Ti
                    "black, `-s 262 0` if 0 is white");
   }
   info.zero_is_white = *photometric == PHOTOMETRIC_MINISWHITE;
-  info.palette = *photometric == PHOTOMETRIC_PALETTE;
+  info.palette = raw.photometric.value_or(*photometric) == PHOTOMETRIC_PALETTE;
   return {};
 }
 
@@ -95,8 +98,18 @@ std::optional<double> dots_per_mm(const TiffHandle& handle, std::uint32_t tag) {
   return static_cast<double>(*dots) / (unit == RESUNIT_INCH ? 25.4 : 10.0);
 }
 
+/// The bytes that the rows of an uncompressed strip or tile of one sample take.
+std::int64_t raw_block_bytes(const TiffHandle& handle, const TiffPageInfo& info, std::int64_t block) {
+  if (info.tiled) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::int64_t>::max();
+    return static_cast<std::int64_t>(std::min(kMost, TIFFTileSize64(handle.get())));
+  }
+  const std::int64_t rows = std::min(info.rows_per_block, info.height - block * info.rows_per_block);
+  return rows * ((info.width * info.bits_per_sample + 7) / 8);
+}
+
 /// Every strip or tile has bytes, and they lie inside the file: found here, truncation costs no half-done job.
-Result<void> check_blocks(const TiffHandle& handle, const std::string& place, const TiffPageInfo& info,
+Result<void> check_blocks(const TiffHandle& handle, const std::string& place, TiffPageInfo& info,
                           std::uint64_t file_bytes) {
   const std::uint32_t blocks = info.tiled ? TIFFNumberOfTiles(handle.get()) : TIFFNumberOfStrips(handle.get());
   const std::string name = info.tiled ? "tile " : "strip ";
@@ -108,20 +121,67 @@ Result<void> check_blocks(const TiffHandle& handle, const std::string& place, co
     int failed = 0;
     const std::uint64_t offset = TIFFGetStrileOffsetWithErr(handle.get(), block, &failed);
     const std::uint64_t bytes = failed != 0 ? 0 : TIFFGetStrileByteCountWithErr(handle.get(), block, &failed);
+    const auto which = [&] { return name + std::to_string(block) + " of " + std::to_string(blocks); };
     if (failed != 0 || offset == 0 || bytes == 0) {
-      return refused(place, name + std::to_string(block) + " of " + std::to_string(blocks) +
-                                " has no data: the file is damaged or was never finished" + handle.messages().text());
+      return refused(place,
+                     which() + " has no data: the file is damaged or was never finished" + handle.messages().text());
     }
     if (offset > file_bytes || bytes > file_bytes - offset) {
-      return refused(place, name + std::to_string(block) + " of " + std::to_string(blocks) + " (bytes " +
-                                std::to_string(offset) + " + " + std::to_string(bytes) + ") ends beyond the file's " +
-                                std::to_string(file_bytes) + " bytes: the file is truncated; copy it again");
+      return refused(place, which() + " (bytes " + std::to_string(offset) + " + " + std::to_string(bytes) +
+                                ") ends beyond the file's " + std::to_string(file_bytes) +
+                                " bytes: the file is truncated; copy it again");
     }
+    const auto stored = static_cast<std::int64_t>(bytes);  // at most the length of the file
+    const bool countable = !info.compressed() && info.samples_per_pixel == 1;
+    const std::int64_t raw = countable ? raw_block_bytes(handle, info, block) : 0;
+    if (stored < raw) {
+      return refused(place, which() + " has " + std::to_string(stored) + " bytes, its rows take " +
+                                std::to_string(raw) + ": the file is damaged; export it again");
+    }
+    info.largest_block_bytes = std::max(info.largest_block_bytes, stored);
+    info.all_block_bytes += stored;
   }
+  // libtiff puts a guess in the place of a length it does not believe; a guess that left the file was refused above.
+  if (handle.messages().sizes_wrong || (handle.messages().sizes_missing && info.compressed())) {
+    return refused(place, name + "0 of " + std::to_string(blocks) + ": its length (the " +
+                              (info.tiled ? "TileByteCounts" : "StripByteCounts") + " tag) is " +
+                              (handle.messages().sizes_wrong ? "not what its rows take" : "missing") +
+                              ": the file is damaged; export it again");
+  }
+  info.blocks = blocks;
   return {};
 }
 
+/// What a codec of libtiff keeps for itself; measured with a counting allocator, and rounded up.
+std::int64_t codec_state_bytes(const TiffPageInfo& info) {
+  constexpr std::int64_t kKiB = 1024;
+  switch (info.compression) {
+    case COMPRESSION_NONE:
+    case COMPRESSION_PACKBITS:
+      return 0;
+    case COMPRESSION_LZW:
+    case COMPRESSION_ADOBE_DEFLATE:
+    case COMPRESSION_DEFLATE:
+      return 256 * kKiB;
+    case COMPRESSION_CCITTRLE:
+    case COMPRESSION_CCITTRLEW:
+    case COMPRESSION_CCITTFAX3:
+    case COMPRESSION_CCITTFAX4:
+      return 64 * kKiB + 16 * info.width;  // where the runs of two rows begin, two numbers of 4 bytes a pixel each
+    case COMPRESSION_ZSTD:
+      return 9 * kKiB * kKiB;  // the window of all levels up to 19
+    default:
+      return 65 * kKiB * kKiB;  // the dictionary of LZMA's highest level
+  }
+}
+
 }  // namespace
+
+std::int64_t TiffPageInfo::codec_bytes() const {
+  constexpr std::int64_t kHandle = 64 * 1024;
+  const std::int64_t stored = compressed() || tiled ? largest_block_bytes : 0;
+  return kHandle + 32 * blocks + stored + codec_state_bytes(*this);
+}
 
 std::string tiff_place(const std::string& path, std::int64_t page) {
   return path + ": page " + std::to_string(page) + ": ";
@@ -133,7 +193,8 @@ Result<TiffHandle> open_tiff_page(const std::string& path, std::int64_t page, co
     return Error{ErrorCode::out_of_range,
                  tiff_place(path, page) + "the file has pages 0 to " + std::to_string(count - 1)};
   }
-  TiffHandle handle(path, "rmh");  // h: the first directory is read only if it is the wanted one
+  // h: the first directory is read only if it is the wanted one; c: strips stay as the file has them
+  TiffHandle handle(path, "rmhc");
   if (!handle || TIFFSetSubDirectory(handle.get(), pages.offsets[static_cast<std::size_t>(page)]) != 1) {
     return refused(tiff_place(path, page),
                    "its directory cannot be read: the file is damaged" + handle.messages().text());

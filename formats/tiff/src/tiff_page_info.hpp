@@ -13,7 +13,7 @@ namespace gravure {
 /// "path: page 3: "
 std::string tiff_place(const std::string& path, std::int64_t page);
 
-/// Opens a TIFF standing on one page. mode "rm": no mmap, so that memory stays bounded whatever the file size.
+/// Opens a TIFF standing on one page. No mmap, so that memory stays bounded whatever the file size.
 Result<TiffHandle> open_tiff_page(const std::string& path, std::int64_t page, const TiffPageList& pages);
 
 /// Reads and checks the directory the handle stands on (see TiffPageInfo).

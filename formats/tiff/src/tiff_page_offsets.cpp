@@ -17,6 +17,10 @@ namespace {
 
 constexpr std::size_t kRememberedFiles = 16;
 
+bool read_all_at(int fd, std::uint64_t offset, unsigned char* out, std::size_t bytes) {
+  return ::pread(fd, out, bytes, static_cast<off_t>(offset)) == static_cast<ssize_t>(bytes);
+}
+
 class ReadOnlyFile {
  public:
   explicit ReadOnlyFile(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
@@ -29,7 +33,7 @@ class ReadOnlyFile {
   }
   int fd() const { return fd_; }
   bool read_at(std::uint64_t offset, unsigned char* out, std::size_t bytes) const {
-    return ::pread(fd_, out, bytes, static_cast<off_t>(offset)) == static_cast<ssize_t>(bytes);
+    return read_all_at(fd_, offset, out, bytes);
   }
 
  private:
@@ -63,6 +67,19 @@ std::optional<Layout> parse_layout(const unsigned char* header) {
   const std::uint64_t version = layout.number(header + 2, 2);
   layout.big = version == 43;
   return version == 42 || version == 43 ? std::optional(layout) : std::nullopt;
+}
+
+/// One number in place, of any of TIFF's unsigned types.
+std::optional<std::uint64_t> small_value(const Layout& layout, const unsigned char* entry) {
+  constexpr std::uint64_t kByte = 1;
+  constexpr std::uint64_t kShort = 3;
+  constexpr std::uint64_t kLong = 4;
+  const std::uint64_t type = layout.number(entry + 2, 2);
+  const unsigned char* const value = entry + (layout.big ? 12 : 8);
+  return type == kByte    ? std::optional(layout.number(value, 1))
+         : type == kShort ? std::optional(layout.number(value, 2))
+         : type == kLong  ? std::optional(layout.number(value, 4))
+                          : std::nullopt;
 }
 
 Error damaged(const std::string& path, std::size_t page, const std::string& what) {
@@ -157,6 +174,31 @@ Result<std::shared_ptr<const TiffPageList>> TiffPageOffsets::find(const std::str
   }
   entries_.push_back({path, status, pages});
   return pages;
+}
+
+TiffRawTags read_raw_tags(int fd, std::uint64_t offset) {
+  constexpr std::uint64_t kPhotometric = 262;
+  constexpr std::uint64_t kOrientation = 274;
+  TiffRawTags tags;
+  std::array<unsigned char, 20> bytes{};
+  const auto layout = read_all_at(fd, 0, bytes.data(), 4) ? parse_layout(bytes.data()) : std::nullopt;
+  if (!layout || !read_all_at(fd, offset, bytes.data(), layout->count_bytes())) {
+    return tags;
+  }
+  const std::uint64_t entries = layout->number(bytes.data(), layout->count_bytes());
+  for (std::uint64_t i = 0; i < entries; ++i) {
+    const std::uint64_t at = offset + layout->count_bytes() + i * layout->entry_bytes();
+    if (!read_all_at(fd, at, bytes.data(), static_cast<std::size_t>(layout->entry_bytes()))) {
+      break;
+    }
+    const std::uint64_t tag = layout->number(bytes.data(), 2);
+    if (tag == kPhotometric && !tags.photometric) {
+      tags.photometric = small_value(*layout, bytes.data());
+    } else if (tag == kOrientation && !tags.orientation) {
+      tags.orientation = small_value(*layout, bytes.data());
+    }
+  }
+  return tags;
 }
 
 bool is_tiff(const std::string& path) {

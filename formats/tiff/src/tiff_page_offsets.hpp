@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,16 @@ struct TiffPageList {
   std::vector<std::uint64_t> offsets;
   std::uint64_t file_bytes = 0;
 };
+
+/// Tags as a directory has them. libtiff replaces some it does not like: a palette without colours by grey, an
+/// orientation it does not know by the usual one.
+struct TiffRawTags {
+  std::optional<std::uint64_t> photometric;
+  std::optional<std::uint64_t> orientation;
+};
+
+/// Of the directory at `offset` of an open file; no tag where it cannot be read.
+TiffRawTags read_raw_tags(int fd, std::uint64_t offset);
 
 /// Finds the pages of TIFF files in one walk a file and remembers those of the latest files. Thread-safe.
 class TiffPageOffsets {

@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -22,10 +24,12 @@ ImageInfo image_info(const TiffPageInfo& page_info, const std::string& path, std
   info.rows_per_block = std::min(page_info.rows_per_block, page_info.height);
   info.x_dots_per_mm = page_info.x_dots_per_mm;
   info.y_dots_per_mm = page_info.y_dots_per_mm;
+  const bool fax = page_info.compression == COMPRESSION_CCITTFAX3 || page_info.compression == COMPRESSION_CCITTFAX4;
+  info.fax_larger_than_raw = fax && page_info.all_block_bytes > info.height * row_bytes(SampleType::bit, info.width);
   return info;
 }
 
-/// What all three ways of reading share: the handle, the checks of a call, the wording of damage.
+/// What all ways of reading share: the handle, the checks of a call, the wording of damage.
 class BilevelSource : public ImageSource {
  public:
   BilevelSource(TiffHandle handle, ImageInfo info)
@@ -163,7 +167,47 @@ class TileSource final : public BlockSource {
   std::vector<std::byte> tile_;
 };
 
-/// Strips too large to decode whole: libtiff streams them row by row. Compressed ones only run upwards; going back
+/// Uncompressed strips: rows straight from their places in the file.
+class PlainSource final : public BilevelSource {
+ public:
+  PlainSource(TiffHandle handle, ImageInfo info, bool lowest_bit_first)
+      : BilevelSource(std::move(handle), std::move(info)), lowest_bit_first_(lowest_bit_first) {}
+
+ private:
+  Result<void> read_checked(std::int64_t first_row, std::int64_t row_count, std::byte* out) override {
+    const std::int64_t end = first_row + row_count;
+    for (std::int64_t row = first_row; row < end;) {
+      const std::int64_t strip = row / info_.rows_per_block;
+      const std::int64_t skip = row - strip * info_.rows_per_block;
+      const std::int64_t rows = std::min(info_.rows_per_block - skip, end - row);
+      const std::uint64_t offset = TIFFGetStrileOffset(tiff(), static_cast<std::uint32_t>(strip));
+      GRAVURE_CHECK(read_bytes(static_cast<std::int64_t>(offset) + skip * row_bytes_, rows * row_bytes_, row, out));
+      out += rows * row_bytes_;
+      row += rows;
+    }
+    return {};
+  }
+
+  Result<void> read_bytes(std::int64_t offset, std::int64_t bytes, std::int64_t row, std::byte* out) {
+    clear_messages();
+    for (std::int64_t done = 0; done < bytes;) {
+      const ssize_t got =
+          ::pread(TIFFFileno(tiff()), out + done, static_cast<std::size_t>(bytes - done), offset + done);
+      if (got <= 0) {
+        return damage(row + done / row_bytes_);
+      }
+      done += got;
+    }
+    if (lowest_bit_first_) {
+      TIFFReverseBits(reinterpret_cast<std::uint8_t*>(out), bytes);
+    }
+    return {};
+  }
+
+  bool lowest_bit_first_;
+};
+
+/// Compressed strips too large to decode whole: libtiff streams them row by row. They only run upwards; going back
 /// would decode the strip from its start again, so only a fresh start is allowed.
 class RowSource final : public BilevelSource {
  public:
@@ -171,15 +215,13 @@ class RowSource final : public BilevelSource {
 
  private:
   Result<void> read_checked(std::int64_t first_row, std::int64_t row_count, std::byte* out) override {
-    if (!info_.random_access && first_row != 0 && first_row < next_row_) {
+    if (first_row != 0 && first_row < next_row_) {
       return Error{ErrorCode::bad_argument, place() + "row " + std::to_string(first_row) + " asked for after row " +
                                                 std::to_string(next_row_ - 1) +
                                                 ": its strips are too large to be read other than upwards; rewrite the "
                                                 "file with smaller strips (`tiffcp -r 64`)"};
     }
-    if (info_.random_access) {
-      next_row_ = first_row;
-    } else if (first_row < next_row_) {
+    if (first_row < next_row_) {
       next_row_ = 0;
     }
     skipped_.resize(next_row_ < first_row ? static_cast<std::size_t>(row_bytes_) : 0);
@@ -223,6 +265,8 @@ Result<std::unique_ptr<ImageSource>> make_tile_source(TiffHandle handle, ImageIn
                                           " rows) is larger than the " + std::to_string(kMaxTiffBlockBytes) +
                                           " bytes allowed; rewrite it in strips with `tiffcp -s -r 64`"};
   }
+  info.decoder_bytes =
+      page_info.codec_bytes() + page_info.rows_per_block * (tile_bytes_across + row_bytes(SampleType::bit, info.width));
   return std::unique_ptr<ImageSource>(
       new TileSource(std::move(handle), std::move(info), page_info.rows_per_block, tile_bytes_across));
 }
@@ -231,11 +275,19 @@ Result<std::unique_ptr<ImageSource>> make_source(TiffHandle handle, ImageInfo in
   if (page_info.tiled) {
     return make_tile_source(std::move(handle), std::move(info), page_info);
   }
-  if (info.rows_per_block <= kMaxTiffBlockBytes / row_bytes(SampleType::bit, info.width)) {
+  info.decoder_bytes = page_info.codec_bytes();
+  if (!page_info.compressed()) {
+    return std::unique_ptr<ImageSource>(
+        new PlainSource(std::move(handle), std::move(info), page_info.lowest_bit_first));
+  }
+  const std::int64_t bytes_a_row = row_bytes(SampleType::bit, info.width);
+  if (info.rows_per_block <= kMaxTiffStripBytes / bytes_a_row && page_info.largest_block_bytes <= kMaxTiffStripBytes) {
+    info.decoder_bytes += info.rows_per_block * bytes_a_row;
     return std::unique_ptr<ImageSource>(new StripSource(std::move(handle), std::move(info)));
   }
+  info.decoder_bytes += bytes_a_row;
   info.rows_per_block = 1;
-  info.random_access = !page_info.compressed;
+  info.random_access = false;
   return std::unique_ptr<ImageSource>(new RowSource(std::move(handle), std::move(info)));
 }
 

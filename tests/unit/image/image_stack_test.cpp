@@ -90,6 +90,20 @@ TEST_F(ImageStackTest, WarnsOfAThresholdForBilevelLayers) {
   EXPECT_NE(stack.value().warnings[0].find("threshold = 128"), std::string::npos);
 }
 
+TEST_F(ImageStackTest, WarnsOnceOfFaxDataLargerThanTheBits) {
+  for (const char* const name : {"a.tif", "b.tif", "c.tif", "d.tif"}) {
+    add(name, 8, 4);
+  }
+  EXPECT_TRUE(scan_stack(job({"*.tif"}), images_).value().warnings.empty());
+  images_.files.at("b.tif").front().fax_larger_than_raw = true;
+  images_.files.at("d.tif").front().fax_larger_than_raw = true;
+  const auto stack = scan_stack(job({"*.tif"}), images_);
+  ASSERT_TRUE(stack) << stack.error().message;
+  ASSERT_EQ(stack.value().warnings.size(), 1U);
+  EXPECT_EQ(stack.value().warnings[0].rfind(folder_ / "b.tif: page 0: its G3 or G4 data are larger", 0), 0U);
+  EXPECT_NE(stack.value().warnings[0].find("(and 1 more)"), std::string::npos);
+}
+
 TEST_F(ImageStackTest, RefusesFloatingPointLayers) {
   add("a.exr", 8, 4, SampleType::f32);
   Job with = job({"a.exr"});

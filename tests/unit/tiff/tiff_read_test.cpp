@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <tiffio.h>
 
+#include <cstring>
+#include <fstream>
 #include <random>
 
 #include "gravure/formats/tiff.hpp"
@@ -166,7 +168,7 @@ TEST(BilevelTiff, StreamsOneStripTooLargeToDecodeWhole) {
   const TempFolder folder;
   const std::string path = folder / "giant.tif";
   constexpr std::int64_t kWidth = std::int64_t{1} << 19;
-  constexpr std::int64_t kHeight = kMaxTiffBlockBytes / (kWidth / 8) + 3;
+  constexpr std::int64_t kHeight = kMaxTiffStripBytes / (kWidth / 8) + 3;
   TIFF* const tiff = TIFFOpen(path.c_str(), "w");
   ASSERT_NE(tiff, nullptr);
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(kWidth));
@@ -202,7 +204,26 @@ TEST(BilevelTiff, StreamsOneStripTooLargeToDecodeWhole) {
   EXPECT_EQ(back.error().code, ErrorCode::bad_argument);
   EXPECT_NE(back.error().message.find("row 5 asked for after row"), std::string::npos) << back.error().message;
   expect_row(0);  // from the start again
-  expect_row(700);
+  expect_row(200);
+}
+
+TEST(BilevelTiff, TellsFaxDataThatAreLargerThanTheBits) {
+  const TempFolder folder;
+  const std::string path = folder / "a.tif";
+  Bits dithered{256, 64, std::vector<std::byte>(32 * 64, std::byte{0x55})};
+  for (std::size_t i = 0; i < dithered.bytes.size(); ++i) {
+    dithered.bytes[i] = (i / 32 & 1) != 0 ? std::byte{0x5A} : std::byte{0xA5};
+  }
+  Bits blank{256, 64, std::vector<std::byte>(32 * 64)};
+  for (const std::uint16_t codec : {kG3, kG4, kLzw, kNone}) {
+    TiffSpec spec;
+    spec.compression = codec;
+    spec.rows_per_block = 64;
+    write_tiff(path, {dithered, blank}, spec);
+    const bool fax = codec == kG3 || codec == kG4;
+    EXPECT_EQ(BilevelTiffOpener().open(path, 0).value()->info().fax_larger_than_raw, fax) << codec_name(codec);
+    EXPECT_FALSE(BilevelTiffOpener().open(path, 1).value()->info().fax_larger_than_raw) << codec_name(codec);
+  }
 }
 
 TEST(BilevelTiff, ReadsGiantUncompressedStripsInAnyOrder) {
@@ -224,14 +245,21 @@ TEST(BilevelTiff, ReadsGiantUncompressedStripsInAnyOrder) {
   }
   put_file(path, raw_tiff(tags, arrays));
   std::filesystem::resize_file(path, std::uintmax_t{data} + 2 * std::uintmax_t{kStrip});  // sparse zeros
+  const auto mark = [&](std::int64_t y) {  // each row begins with its number
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(data + y * (kWidth / 8));
+    file.write(reinterpret_cast<const char*>(&y), sizeof y);
+  };
   const auto source = BilevelTiffOpener().open(path, 0);
   ASSERT_TRUE(source) << source.error().message;
   EXPECT_TRUE(source.value()->info().random_access);
-  EXPECT_EQ(source.value()->info().rows_per_block, 1);
   std::vector<std::byte> row(kWidth / 8, std::byte{1});
-  for (const std::int64_t y : {std::int64_t{2} * kRows - 1, std::int64_t{0}, std::int64_t{kRows}}) {
+  EXPECT_LT(source.value()->info().decoder_bytes, 1 << 20) << "no strip is held";
+  for (const std::int64_t y : {std::int64_t{2} * kRows - 1, std::int64_t{0}, std::int64_t{kRows}, std::int64_t{5}}) {
+    mark(y);
     ASSERT_TRUE(source.value()->read_rows(y, 1, row));
-    EXPECT_EQ(row.front(), std::byte{0});
+    EXPECT_EQ(std::memcmp(row.data(), &y, sizeof y), 0) << y;
+    EXPECT_EQ(row.back(), std::byte{0});
   }
 }
 

@@ -145,6 +145,113 @@ TEST(BilevelTiffRefuses, TagsThatContradictTheFile) {
   expect_refused(path, "the file is truncated");
 }
 
+TEST(BilevelTiffRefuses, OrientationsThatLibtiffDoesNotKnow) {
+  const TempFolder folder;
+  for (const std::uint32_t orientation : {0U, 9U, 255U, 65535U}) {
+    std::vector<RawTag> tags = bilevel_tags(80, 10, raw_data_offset(10), 100);
+    tags.insert(tags.begin() + 6, {274, 3, 1, orientation});
+    put_file(folder / "raw.tif", raw_tiff(tags, std::string(100, '\x55')));
+    expect_refused(folder / "raw.tif", "page 0: orientation tag " + std::to_string(orientation) + ": only 1");
+  }
+}
+
+/// libtiff takes a palette picture of 8 bits without colours for grey.
+TEST(BilevelTiffRefuses, PalettesWithoutColours) {
+  const TempFolder folder;
+  for (const std::uint32_t bits : {8U, 16U}) {
+    std::vector<RawTag> tags = bilevel_tags(10, 10, raw_data_offset(9), 100 * bits / 8);
+    tags[2].value = bits;
+    tags[4].value = PHOTOMETRIC_PALETTE;
+    put_file(folder / "raw.tif", raw_tiff(tags, std::string(200, '\x55')));
+    const auto info = BilevelTiffOpener().read_page_info(folder / "raw.tif", 0);
+    ASSERT_TRUE(info) << info.error().message;
+    EXPECT_TRUE(info.value().palette) << bits;
+    expect_refused(folder / "raw.tif", "through a palette");
+  }
+  std::vector<RawTag> tags = bilevel_tags(80, 10, raw_data_offset(9), 100);
+  tags[4].value = PHOTOMETRIC_PALETTE;
+  put_file(folder / "raw.tif", raw_tiff(tags, std::string(100, '\x55')));
+  expect_refused(folder / "raw.tif", "page 0");
+}
+
+/// The lengths of two strips or tiles stand behind the directory; the data follow.
+std::string two_blocks(std::uint32_t compression, bool tiled, std::uint32_t first_bytes, std::uint32_t second_bytes,
+                       std::uint32_t second_offset = 0) {
+  const std::size_t count = tiled ? 10 : 9;
+  const std::uint32_t arrays = raw_data_offset(count);
+  const std::uint32_t data = arrays + 16;
+  std::vector<RawTag> tags = bilevel_tags(16, 32, 0, 0);
+  tags[3].value = compression;
+  tags[5] = {273, 4, 2, arrays};
+  tags[7].value = 16;
+  tags[8] = {279, 4, 2, arrays + 8};
+  if (tiled) {
+    tags = {tags[0],
+            tags[1],
+            tags[2],
+            tags[3],
+            tags[4],
+            {277, 3, 1, 1},
+            {322, 4, 1, 16},
+            {323, 4, 1, 16},
+            {324, 4, 2, arrays},
+            {325, 4, 2, arrays + 8}};
+  }
+  std::string places;
+  for (const std::uint32_t number : {data, second_offset != 0 ? second_offset : data + 32, first_bytes, second_bytes}) {
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+      places += static_cast<char>(number >> shift);
+    }
+  }
+  return raw_tiff(tags, places + std::string(64, '\x55'));
+}
+
+TEST(BilevelTiffRefuses, StripsAndTilesOfImpossibleLengthOrPlace) {
+  const TempFolder folder;
+  const std::string path = folder / "two.tif";
+  for (const bool tiled : {false, true}) {
+    const std::string name = tiled ? "tile" : "strip";
+    put_file(path, two_blocks(kNone, tiled, 32, 32));
+    EXPECT_TRUE(open_and_read(path)) << "the same file, whole, is read";
+    for (const std::uint16_t codec : {kNone, kG4, kLzw, kDeflate, kPackBits}) {
+      put_file(path, two_blocks(codec, tiled, 32, 0));
+      expect_refused(path, "page 0: " + name + " 1 of 2 has no data");
+      put_file(path, two_blocks(codec, tiled, 32, 33));
+      expect_refused(path, "page 0: " + name + " 1 of 2 (bytes ");
+      put_file(path, two_blocks(codec, tiled, 32, 0xFFFFFFFFU));
+      expect_refused(path, "page 0: " + name + " 1 of 2 (bytes ");
+      put_file(path, two_blocks(codec, tiled, 32, 32, 0x7FFFFFFFU));
+      expect_refused(path, "page 0: " + name + " 1 of 2 (bytes 2147483647 + 32) ends beyond the file's");
+    }
+    put_file(path, two_blocks(kNone, tiled, 32, 31));
+    expect_refused(path, "page 0: " + name + " 1 of 2 has 31 bytes, its rows take 32");
+  }
+}
+
+TEST(BilevelTiffRefuses, OneStripWhoseLengthLibtiffWouldGuess) {
+  const TempFolder folder;
+  const std::string path = folder / "one.tif";
+  for (const std::uint16_t codec : {kNone, kG4, kLzw, kDeflate, kPackBits}) {
+    for (const std::uint32_t bytes : {0U, 0xFFFFFFF0U}) {
+      std::vector<RawTag> tags = bilevel_tags(80, 10, raw_data_offset(9), bytes);
+      tags[3].value = codec;
+      put_file(path, raw_tiff(tags, std::string(100, '\x55')));
+      expect_refused(path, "page 0: strip 0 of 1");
+    }
+    std::vector<RawTag> tags = bilevel_tags(80, 10, raw_data_offset(8), 0);
+    tags[3].value = codec;
+    tags.pop_back();
+    put_file(path, raw_tiff(tags, std::string(100, '\x55')));
+    if (codec == kNone) {  // old programs leave it out; ten rows of ten bytes it is
+      EXPECT_TRUE(open_and_read(path));
+    } else {
+      expect_refused(path, "page 0: strip 0 of 1: its length (the StripByteCounts tag) is missing");
+    }
+  }
+  put_file(path, raw_tiff(bilevel_tags(80, 10, raw_data_offset(9), 99), std::string(100, '\x55')));
+  expect_refused(path, "page 0: strip 0 of 1");
+}
+
 TEST(BilevelTiffRefuses, PagesWithoutPolarity) {
   const TempFolder folder;
   std::vector<RawTag> tags = bilevel_tags(80, 10, raw_data_offset(8), 100);

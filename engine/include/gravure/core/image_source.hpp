@@ -23,6 +23,8 @@ struct ImageInfo {
   bool zero_is_white = false;           ///< bit images: raw bit 0 means white (TIFF MinIsWhite)
   std::int64_t rows_per_block = 1;      ///< strip or tile height: reading whole blocks is cheapest
   bool random_access = true;            ///< false: rows must be read upwards from 0 (one giant strip)
+  std::int64_t decoder_bytes = 0;       ///< the most its reader holds beside the rows it gives: blocks, codec, tables
+  bool fax_larger_than_raw = false;     ///< CCITT data beyond the bits they stand for: dithered, very slow to decode
   std::optional<double> x_dots_per_mm;  ///< physical size tag, where there is one
   std::optional<double> y_dots_per_mm;
 };

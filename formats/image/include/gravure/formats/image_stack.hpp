@@ -39,7 +39,8 @@ ScanSize scan_size(const ImageSettings& settings, std::int64_t width, std::int64
 /// Finds the job's images and reads their headers only: files in natural order, the pages of a multi-page file in
 /// order. Fails with bad_file when a pattern matches nothing, a header is bad, two layers differ in size or sample
 /// type; bad_argument when grey layers lack a threshold (the message suggests one) or have one out of range, and when
-/// a depth map is bilevel, has several pages or no `levels`.
+/// a depth map is bilevel, has several pages or no `levels`. Warns of a threshold that does nothing, and of G3 and G4
+/// data larger than the bits they stand for.
 Result<ImageStack> scan_stack(const Job& job, const ImageOpener& opener);
 
 /// Do the images fit the plan? Pixels per line and lines per revolution must be equal, else bad_file with the numbers

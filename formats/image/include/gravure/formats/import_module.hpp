@@ -11,7 +11,7 @@
 namespace gravure {
 
 /// Raised whenever ImportModule, ImageOpener, ImageSource, ImageInfo, Error or Result change.
-inline constexpr std::uint32_t kImportAbiVersion = 1;
+inline constexpr std::uint32_t kImportAbiVersion = 2;
 
 struct ImportModule {
   std::uint32_t abi_version;                      ///< first for ever: looked at before anything else

@@ -11,9 +11,10 @@
 namespace gravure {
 
 /// Limits that hold for every TIFF page, checked before anything of its size is allocated.
-inline constexpr std::int64_t kMaxTiffRowBytes = std::int64_t{64} << 20;  ///< one row
-inline constexpr std::int64_t kMaxTiffBlockBytes = std::int64_t{64}
-                                                   << 20;  ///< a strip decoded in one go, a row of tiles
+inline constexpr std::int64_t kMaxTiffRowBytes = std::int64_t{64} << 20;    ///< one row
+inline constexpr std::int64_t kMaxTiffBlockBytes = std::int64_t{64} << 20;  ///< a row of tiles
+/// Compressed strips up to this size, stored and decoded, are decoded in one go; larger ones are streamed row by row.
+inline constexpr std::int64_t kMaxTiffStripBytes = std::int64_t{16} << 20;
 inline constexpr std::int64_t kMaxTiffPages = 1'000'000;
 
 /// What the directory of one TIFF page says, once it was found to hold together.
@@ -23,14 +24,21 @@ struct TiffPageInfo {
   int bits_per_sample = 1;
   int samples_per_pixel = 1;
   bool palette = false;
-  bool zero_is_white = false;  ///< PhotometricInterpretation MinIsWhite
-  bool compressed = false;
+  bool zero_is_white = false;     ///< PhotometricInterpretation MinIsWhite
+  int compression = 1;            ///< TIFF's number; 1: none
+  bool lowest_bit_first = false;  ///< FillOrder 2
   bool tiled = false;
-  std::int64_t rows_per_block = 1;      ///< strip or tile height
-  std::optional<double> x_dots_per_mm;  ///< where the page has a resolution with a unit
+  std::int64_t rows_per_block = 1;       ///< strip or tile height
+  std::int64_t blocks = 1;               ///< strips or tiles
+  std::int64_t largest_block_bytes = 0;  ///< of a strip or tile as stored
+  std::int64_t all_block_bytes = 0;      ///< of all of them
+  std::optional<double> x_dots_per_mm;   ///< where the page has a resolution with a unit
   std::optional<double> y_dots_per_mm;
 
   bool bilevel() const { return bits_per_sample == 1 && samples_per_pixel == 1; }
+  bool compressed() const { return compression != 1; }
+  /// The most libtiff holds to decode one block: the block as stored, the codec's own state, the tables of places.
+  std::int64_t codec_bytes() const;
 };
 
 /// Does the file begin as a TIFF or BigTIFF does? False too where it cannot be read.
@@ -59,8 +67,9 @@ class BilevelTiffOpener final : public ImageOpener {
 
   /// Pages of any TIFF, bilevel or not.
   Result<std::int64_t> count_pages(const std::string& path) const override;
-  /// Strips of up to kMaxTiffBlockBytes are decoded whole and in any order; larger compressed ones row by row and then
-  /// upwards only (random_access = false; starting again from row 0 is allowed).
+  /// Uncompressed strips are read from their places, any rows in any order. Compressed ones of up to kMaxTiffStripBytes
+  /// are decoded whole and in any order, larger ones row by row and then upwards only (random_access = false; starting
+  /// again from row 0 is allowed). libtiff holds such a strip whole as it is stored: decoder_bytes says how much.
   Result<std::unique_ptr<ImageSource>> open(const std::string& path, std::int64_t page) const override;
   /// The header of any page, bilevel or not, checked: every strip or tile lies inside the file.
   Result<TiffPageInfo> read_page_info(const std::string& path, std::int64_t page) const;
