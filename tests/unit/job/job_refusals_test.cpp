@@ -122,7 +122,7 @@ const Refusal kRanges[] = {
     {"NoPitch", "line_pitch_um      = 8.0", "line_pitch_um = 0", kRange, "0      # or lines",
      "[rotary] line_pitch_um = 0: must be a number from 0.001 to 10_000 um"},
     {"NegativeTurn", "= 1800", "= -1", kRange, "-1 ",
-     "[scanner] turn_slots = -1: must be an integer from 0 to 1_000_000_000 pulse slots"},
+     "[scanner] turn_slots = -1: must be an integer from 0 to 10_000_000 pulse slots"},
     {"GearOfNothing", "[1, 1]", "[1, 0]", kRange, "0]",
      "[rotary] gear = [1, 0]: must be [encoder turns, workpiece turns], two integers from 1 to 1_000_000"},
     {"ThresholdOfNothing", "order ", "threshold = 0\norder ", kRange, "0\norder",
