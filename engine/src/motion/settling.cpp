@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "last_exit.hpp"
 #include "mode_constants.hpp"
 
 namespace gravure::motion {
@@ -13,61 +14,87 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// The signal at an instant that walks back in time.
-class BackwardWalk {
+/// The sum of the terms' sizes over time, against a tolerance.
+class Envelope {
  public:
-  BackwardWalk(std::span<const ResidualSignal::Term> terms, double after_s) noexcept
-      : terms_(terms), after_s_(after_s) {
+  Envelope(std::span<const ResidualSignal::Term> terms, double tolerance) noexcept
+      : terms_(terms), tolerance_(tolerance) {
     for (std::size_t i = 0; i < terms_.size(); ++i) {
-      const auto& term = terms_[i];
-      const ModeConstants m{0, term.decay_per_s, term.rad_per_s, {}};
-      now_[i] = times(term.amplitude, exp_of(m, after_s));
-      fastest_decay_ = std::max(fastest_decay_, term.decay_per_s);
-      square_[i] = term.decay_per_s * term.decay_per_s + term.rad_per_s * term.rad_per_s;
+      size_[i] = std::abs(terms_[i].amplitude);
+      total_ += size_[i];
+      if (terms_[i].decay_per_s > 0) {
+        slowest_decay_ = std::min(slowest_decay_, terms_[i].decay_per_s);
+      } else {
+        undamped_ += size_[i];
+      }
     }
   }
 
-  double after_s() const noexcept { return after_s_; }
-  double value() const noexcept {
-    double sum = 0;
-    for (std::size_t i = 0; i < terms_.size(); ++i) {
-      sum += now_[i].imag();
+  bool settled_at_once() const noexcept { return !(total_ > tolerance_); }
+  bool never_settles() const noexcept { return undamped_ >= tolerance_; }
+  double trivial_time_s() const noexcept { return settled_at_once() ? 0 : kNever; }
+
+  /// When it reaches the tolerance, by Newton on the logarithm, which is convex and falls: it comes from the left and
+  /// never passes the root.
+  double time_s() const noexcept {
+    double time_s = start_s();
+    for (int step = 0; step < 100; ++step) {
+      const Sum sum = at(time_s);
+      const double advance = std::log(sum.value / tolerance_) * sum.value / sum.falling;
+      if (!(advance > 1e-15 * time_s)) {
+        break;
+      }
+      time_s += advance;
     }
-    return sum;
+    return time_s * (1 + 1e-13);
   }
 
-  /// A step back within which |signal| provably stays within the tolerance: Taylor with a bound of the curvature, which
-  /// grows by at most exp(1/2) over half a time constant.
-  double safe_step(double value, double tolerance) const noexcept {
-    double slope = 0;
-    double curvature = 0;
-    for (std::size_t i = 0; i < terms_.size(); ++i) {
-      slope += -terms_[i].decay_per_s * now_[i].imag() + terms_[i].rad_per_s * now_[i].real();
-      curvature += square_[i] * (std::abs(now_[i].real()) + std::abs(now_[i].imag()));
+  /// A little later than time_s() and found sooner: what is left above the tolerance decays at least as the slowest.
+  double time_bound_s() const noexcept {
+    double time_s = start_s();
+    for (int step = 0; step < 100; ++step) {
+      const Sum sum = at(time_s);
+      const double excess = sum.value - tolerance_;
+      if (excess <= 0.05 * tolerance_) {
+        time_s += std::max(0.0, excess) / (tolerance_ - undamped_) / slowest_decay_;
+        break;
+      }
+      time_s += excess / sum.falling;
     }
-    curvature *= 1.6487212707001282;
-    const double up = tolerance - value;
-    const double down = tolerance + value;
-    const double step_up = 2 * up / (-slope + std::sqrt(slope * slope + 2 * curvature * up));
-    const double step_down = 2 * down / (slope + std::sqrt(slope * slope + 2 * curvature * down));
-    const double longest = fastest_decay_ > 0 ? 0.5 / fastest_decay_ : kNever;
-    return std::min({step_up, step_down, longest});
-  }
-
-  void step_back(double step_s) noexcept {
-    after_s_ -= step_s;
-    for (std::size_t i = 0; i < terms_.size(); ++i) {
-      const ModeConstants m{0, terms_[i].decay_per_s, terms_[i].rad_per_s, {}};
-      now_[i] = times(now_[i], exp_of(m, -step_s));
-    }
+    return time_s * (1 + 1e-13);
   }
 
  private:
+  struct Sum {
+    double value = 0;
+    double falling = 0;
+  };
+  Sum at(double time_s) const noexcept {
+    Sum sum;
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+      const double now = size_[i] * std::exp(-terms_[i].decay_per_s * time_s);
+      sum.value += now;
+      sum.falling += terms_[i].decay_per_s * now;
+    }
+    return sum;
+  }
+  /// Before this one term alone is too large.
+  double start_s() const noexcept {
+    double time_s = 0;
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+      if (size_[i] > tolerance_) {  // so it is damped
+        time_s = std::max(time_s, std::log(size_[i] / tolerance_) / terms_[i].decay_per_s);
+      }
+    }
+    return time_s;
+  }
+
   std::span<const ResidualSignal::Term> terms_;
-  double after_s_;
-  double fastest_decay_ = 0;
-  std::array<std::complex<double>, kMaxModes> now_{};
-  std::array<double, kMaxModes> square_{};
+  double tolerance_;
+  double total_ = 0;
+  double undamped_ = 0;
+  double slowest_decay_ = kNever;
+  std::array<double, kMaxModes> size_{};
 };
 
 }  // namespace
@@ -95,53 +122,15 @@ double ResidualSignal::envelope(double after_s) const noexcept {
 }
 
 double ResidualSignal::envelope_time_s(double tolerance) const noexcept {
-  std::array<double, kMaxModes> size{};
-  double undamped = 0;
-  double total = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    size[i] = std::abs(terms_[i].amplitude);
-    total += size[i];
-    undamped += terms_[i].decay_per_s > 0 ? 0 : size[i];
-  }
-  if (!(total > tolerance)) {
-    return 0;
-  }
-  if (undamped >= tolerance) {
-    return kNever;
-  }
-  // Newton on the logarithm, which is convex and falls: it comes from the left and never passes the root.
-  double time_s = 0;
-  for (int step = 0; step < 100; ++step) {
-    double sum = 0;
-    double falling = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const double now = size[i] * std::exp(-terms_[i].decay_per_s * time_s);
-      sum += now;
-      falling += terms_[i].decay_per_s * now;
-    }
-    const double advance = std::log(sum / tolerance) * sum / falling;
-    if (!(advance > 1e-15 * time_s)) {
-      break;
-    }
-    time_s += advance;
-  }
-  return time_s * (1 + 1e-13);
+  const Envelope envelope(terms(), tolerance);
+  return envelope.settled_at_once() || envelope.never_settles() ? envelope.trivial_time_s() : envelope.time_s();
 }
 
 double ResidualSignal::last_exit_s(double tolerance) const noexcept {
-  const double from_s = envelope_time_s(tolerance);
-  if (!(from_s > 0) || from_s == kNever) {
-    return from_s;
-  }
-  BackwardWalk walk(terms(), from_s);
-  while (walk.after_s() > 0) {
-    const double value = walk.value();
-    if (std::abs(value) >= tolerance * (1 - 1e-12)) {
-      return walk.after_s();
-    }
-    walk.step_back(walk.safe_step(value, tolerance));
-  }
-  return 0;
+  const Envelope envelope(terms(), tolerance);
+  return envelope.settled_at_once() || envelope.never_settles()
+             ? envelope.trivial_time_s()
+             : last_exit_before(terms(), envelope.time_bound_s(), tolerance);
 }
 
 ResidualSignal residual_of(std::span<const Mode> modes, std::span<const InputJump> input, BandOf of) noexcept {

@@ -234,6 +234,46 @@ TEST(PositioningTime, FindsAPeakThatOnlyJustLeavesTheBand) {
   EXPECT_LT(signal.last_exit_s(peak * (1 + 1e-10)), peak_s - half_turn / 4);
 }
 
+// Peaks of beating modes with the band a hair under or over them: the hair decides.
+TEST(PositioningTime, FindsPeaksOfSeveralModesThatTouchTheBand) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed() + 5);
+  int peaks = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    ResidualSignal signal;
+    double fastest = 0;
+    const int modes = 1 + trial % 4;
+    for (int i = 0; i < modes; ++i) {
+      const double w = random.log_between(50, 1000);
+      signal.add({{random.between(-1, 1), random.between(-1, 1)}, random.log_between(0.002, 0.3) * w, w});
+      fastest = std::max(fastest, w);
+    }
+    // The last peak before a random instant, by climbing in ever smaller steps.
+    double peak_s = random.between(0.005, 0.05);
+    for (double step_s = 0.2 / fastest; step_s > 1e-12; step_s /= 2) {
+      for (const double side : {-step_s, step_s}) {
+        while (peak_s + side > 0 && std::abs(signal.at(peak_s + side)) > std::abs(signal.at(peak_s))) {
+          peak_s += side;
+        }
+      }
+    }
+    const double peak = std::abs(signal.at(peak_s));
+    if (peak_s < 1e-3 || peak < 1e-6) {
+      continue;  // climbed out of the signal
+    }
+    ++peaks;
+    const double under = signal.last_exit_s(peak * (1 - 1e-9));
+    ASSERT_GE(under, peak_s - 1e-9) << trial;
+    ASSERT_NEAR(std::abs(signal.at(under)), peak, 2e-9 * peak) << trial;
+    const double over = signal.last_exit_s(peak * (1 + 1e-9));
+    ASSERT_LE(over, under) << trial;
+    const double until_s = signal.envelope_time_s(peak) + 1e-5;
+    ASSERT_GE(over, scanned_exit_s(signal, peak * (1 + 1e-9), until_s, until_s / 5000) - 1e-12) << trial;
+    ASSERT_GT(std::abs(over - peak_s), 1e-7 / fastest) << trial;
+  }
+  EXPECT_GT(peaks, 1000);
+}
+
 TEST(PositioningTime, IsNeverWhereAnUndampedModeExceedsTheBand) {
   const Profile profile = plan_profile(indexing(500, 30000, 30000, 22)).value();
   const std::vector<Mode> modes{{40, 0, 1}};
