@@ -20,15 +20,6 @@ double nearest_turn(double angle, double near) noexcept {
   return angle + 2 * kPi * std::round((near - angle) / (2 * kPi));
 }
 
-AxisPose with_angles(const Vector3& centre, const Vector3& rotary_centre, double a, double c) noexcept {
-  const double x = centre[0] - rotary_centre[0];
-  const double y = centre[1] - rotary_centre[1];
-  const double z = centre[2] - rotary_centre[2];
-  const double xr = std::cos(c) * x - std::sin(c) * y;
-  const double yr = std::sin(c) * x + std::cos(c) * y;
-  return {xr, std::cos(a) * yr - std::sin(a) * z, std::sin(a) * yr + std::cos(a) * z, a, c};
-}
-
 /// One way to stand at a sample, with the cheapest way to get there.
 struct Choice {
   double a = 0;
@@ -124,12 +115,21 @@ Error no_branch(std::size_t sample, const BranchCosts& costs) {
 
 }  // namespace
 
+AxisPose axes_at(const Vector3& centre_mm, const Vector3& rotary_centre_mm, double a_rad, double c_rad) noexcept {
+  const double x = centre_mm[0] - rotary_centre_mm[0];
+  const double y = centre_mm[1] - rotary_centre_mm[1];
+  const double z = centre_mm[2] - rotary_centre_mm[2];
+  const double xr = std::cos(c_rad) * x - std::sin(c_rad) * y;
+  const double yr = std::sin(c_rad) * x + std::cos(c_rad) * y;
+  return {xr, std::cos(a_rad) * yr - std::sin(a_rad) * z, std::sin(a_rad) * yr + std::cos(a_rad) * z, a_rad, c_rad};
+}
+
 AxisPose axes_of(const ToolPose& tool, const Vector3& rotary_centre_mm, Branch branch, double c_before_rad) {
   const double flat = std::hypot(tool.axis[0], tool.axis[1]);
   const double tilt = std::atan2(flat, tool.axis[2]);
   const double turn = std::atan2(tool.axis[0], tool.axis[1]) + (branch == Branch::positive_a ? 0 : kPi);
   const double c = flat > 0 ? nearest_turn(turn, c_before_rad) : c_before_rad;
-  return with_angles(tool.centre_mm, rotary_centre_mm, branch == Branch::positive_a ? tilt : -tilt, c);
+  return axes_at(tool.centre_mm, rotary_centre_mm, branch == Branch::positive_a ? tilt : -tilt, c);
 }
 
 ToolPose tool_of(const AxisPose& axes, const Vector3& rotary_centre_mm) {
@@ -187,7 +187,7 @@ Result<std::vector<AxisPose>> choose_branches(std::span<const ToolPose> path, co
   std::vector<AxisPose> poses(path.size());
   for (std::size_t k = path.size(); k-- > 0;) {
     const Choice& choice = stages[k][chosen];
-    poses[k] = with_angles(path[k].centre_mm, rotary_centre_mm, choice.a, choice.c);
+    poses[k] = axes_at(path[k].centre_mm, rotary_centre_mm, choice.a, choice.c);
     chosen = choice.from;
   }
   return poses;

@@ -38,6 +38,9 @@ enum class Branch : std::uint8_t { positive_a, negative_a };
 /// value.
 AxisPose axes_of(const ToolPose& tool, const Vector3& rotary_centre_mm, Branch branch, double c_before_rad = 0);
 
+/// The same for angles that are chosen already.
+AxisPose axes_at(const Vector3& centre_mm, const Vector3& rotary_centre_mm, double a_rad, double c_rad) noexcept;
+
 /// Back into the workpiece's frame; the axis has length 1.
 ToolPose tool_of(const AxisPose& axes, const Vector3& rotary_centre_mm);
 

@@ -1,0 +1,140 @@
+#include "gravure/motion/rotary_rewrite.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "gravure/motion/unreverse.hpp"
+#include "motion_test_support.hpp"
+
+namespace gravure::motion {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr const char* kProgram =
+    "( a short path )\n"
+    "G90 G21 G93\n"
+    "G0  X  10  Y -5.5  Z 30  A -40  C 10 ; start\n"
+    "G1 X 9 Y -5 Z 29 A-41 C12 F 100\r\n"
+    "G1 Z 28 (tip only) F90\n"
+    "g1 a-41.5 F 80\n"
+    "M30";
+
+RewriteRequest request_for(const std::vector<double>& a, const std::vector<double>& c) {
+  return {kProgram, a, c, ProgramFrame::workpiece, 0, {0, 0, 0}};
+}
+
+TEST(RotaryRewrite, LeavesEveryByteWhereNothingTurns) {
+  const std::vector<double> a{-40, -41, -41.5};
+  const std::vector<double> c{10, 12, 12};
+  for (const ProgramFrame frame : {ProgramFrame::workpiece, ProgramFrame::machine}) {
+    RewriteRequest request = request_for(a, c);
+    request.frame = frame;
+    request.ball_radius_mm = 3;
+    const Rewritten rewritten = rewrite_rotary_program(request).value();
+    EXPECT_EQ(rewritten.program, kProgram);
+    EXPECT_EQ(rewritten.changed_lines, 0U);
+    EXPECT_EQ(rewritten.largest_tilt_deg, 0);
+  }
+}
+
+TEST(RotaryRewrite, ChangesAnglesAloneWhereTheTipIsHeldOnTheWorkpiece) {
+  const std::vector<double> a{-40, -41.25, -41.5};
+  const std::vector<double> c{10, 12, 12.5};
+  const Rewritten rewritten = rewrite_rotary_program(request_for(a, c)).value();
+  EXPECT_EQ(rewritten.program,
+            "( a short path )\n"
+            "G90 G21 G93\n"
+            "G0  X  10  Y -5.5  Z 30  A -40  C 10 ; start\n"
+            "G1 X 9 Y -5 Z 29 A-41.25 C12 F 100\r\n"
+            "G1 Z 28 (tip only) F90\n"
+            "g1 a-41.5 F 80 C12.5\n"
+            "M30");
+  EXPECT_EQ(rewritten.changed_lines, 2U);
+  EXPECT_NEAR(rewritten.largest_tilt_deg, 0.5 * std::sin(41.5 * kDegree), 1e-3);
+  EXPECT_EQ(rewritten.largest_shift_mm, 0);
+}
+
+/// Centre of the ball in the workpiece's frame at every block that turns.
+std::vector<Vector3> ball_centres(const std::string& program, const RewriteRequest& request) {
+  std::vector<Vector3> centres;
+  const RotaryPath path = parse_rotary_program(program).value();
+  for (std::size_t k = 0; k < path.line.size(); ++k) {
+    const auto& x = path.xyz_mm[k];
+    const ToolPose tool =
+        tool_of({x[0], x[1], x[2], path.a_deg[k] * kDegree, path.c_deg[k] * kDegree}, request.rotary_centre_mm);
+    const Vector3 tip = request.frame == ProgramFrame::workpiece ? Vector3{x[0], x[1], x[2]} : tool.centre_mm;
+    centres.push_back({tip[0] + request.ball_radius_mm * tool.axis[0], tip[1] + request.ball_radius_mm * tool.axis[1],
+                       tip[2] + request.ball_radius_mm * tool.axis[2]});
+  }
+  return centres;
+}
+
+TEST(RotaryRewrite, HoldsTheCentreOfTheBallInBothFrames) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed());
+  for (int trial = 0; trial < 200; ++trial) {
+    std::string program = "G1 X1 Y2 Z3 A0 C0\n";
+    std::vector<double> a{0};
+    std::vector<double> c{0};
+    for (int k = 0; k < 20; ++k) {
+      a.push_back(random.between(-80, 80));
+      c.push_back(random.between(-400, 400));
+      program += "G1 X" + std::to_string(random.between(-50, 50)) + " Z" + std::to_string(random.between(-50, 50)) +
+                 " A" + std::to_string(a.back()) + " C" + std::to_string(c.back()) + "\n";
+      a.back() += random.between(-3, 3);
+      c.back() += random.between(-3, 3);
+    }
+    RewriteRequest request{
+        program,      a, c, trial % 2 == 0 ? ProgramFrame::workpiece : ProgramFrame::machine, trial % 3 == 0 ? 0 : 4.0,
+        {10, -20, 30}};
+    const Rewritten rewritten = rewrite_rotary_program(request).value();
+    const auto before = ball_centres(program, request);
+    const auto after = ball_centres(rewritten.program, request);
+    ASSERT_EQ(before.size(), after.size());
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        ASSERT_NEAR(after[k][i], before[k][i], 4e-6) << trial << " block " << k;
+      }
+    }
+    EXPECT_LE(rewritten.largest_error_mm, 4e-6);
+  }
+}
+
+TEST(RotaryRewrite, ComputesMovesOfXyzAnewThatFollowATurn) {
+  const std::string program = "G1 X10 Y0 Z0 A30 C0\nG1 X20\nG1 Y5\n";
+  const std::vector<double> a{32};
+  const std::vector<double> c{0};
+  const Rewritten rewritten = rewrite_rotary_program({program, a, c, ProgramFrame::machine, 0, {0, 0, 100}}).value();
+  // The tip of X20 Y5 at A30, stood at A32 instead.
+  const ToolPose tip = tool_of({20, 5, 0, 30 * kDegree, 0}, {0, 0, 100});
+  const AxisPose axes = axes_at(tip.centre_mm, {0, 0, 100}, 32 * kDegree, 0);
+  EXPECT_NE(rewritten.program.find("A32"), std::string::npos);
+  const std::string last = rewritten.program.substr(rewritten.program.rfind("G1"));
+  EXPECT_NEAR(std::stod(last.substr(last.find('Y') + 1)), axes.y_mm, 1e-6);
+  EXPECT_NEAR(std::stod(last.substr(last.find('Z') + 1)), axes.z_mm, 1e-6);
+}
+
+TEST(RotaryRewrite, RefusesByLineWhatItCannotWriteAnew) {
+  const std::vector<double> one{1};
+  for (const char* line : {"G2 X1 Y1 I1 J0", "G91", "G20", "G92 X0", "G81 Z-1 R1", "#1=5", "o<sub> call", "O100 sub",
+                           "G1 X[1+2]", "G28", "G55"}) {
+    const std::string program = "G1 X0 Y0 Z0 A0 C0\n" + std::string(line) + "\n";
+    const auto refused = rewrite_rotary_program({program, one, one, ProgramFrame::workpiece, 0, {}});
+    ASSERT_FALSE(refused) << line;
+    EXPECT_EQ(refused.error().code, ErrorCode::bad_file);
+    EXPECT_NE(refused.error().message.find("line 2"), std::string::npos) << refused.error().message;
+  }
+  EXPECT_TRUE(rewrite_rotary_program({"G55\nG1 X0 Y0 Z0 A0 C0\n(G2)\n", one, one, ProgramFrame::machine, 0, {}}));
+  const auto unknown = rewrite_rotary_program({"G1 X0 A0 C0\n", one, one, ProgramFrame::machine, 0, {}});
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().message.find("line 1"), std::string::npos);
+  const std::vector<double> two{1, 2};
+  EXPECT_EQ(rewrite_rotary_program({"G1 A0\n", two, two, ProgramFrame::workpiece, 0, {}}).error().code,
+            ErrorCode::out_of_range);
+}
+
+}  // namespace
+}  // namespace gravure::motion
