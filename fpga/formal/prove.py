@@ -24,8 +24,7 @@ def read_proofs():
     for line in (HERE / "proofs.txt").read_text().splitlines():
         words = line.split("#")[0].split()
         if words:
-            parameters = [word.split("=") for word in words[3:]]
-            proofs.append((words[0], words[1], words[2], parameters))
+            proofs.append((words[0], words[1], words[2], words[3:]))
     return proofs
 
 
@@ -43,8 +42,9 @@ def run(command, folder, timeout):
 
 
 def read_design(rtl, module, parameters):
-    chparam = " ".join(f"-set {name} {value}" for name, value in parameters)
-    script = f"read_verilog -formal -I{rtl} {' '.join(str(file) for file in sorted(rtl.glob('*.v')))}; "
+    macros = " ".join(word for word in parameters if word.startswith("-D"))
+    chparam = " ".join("-set " + word.replace("=", " ") for word in parameters if not word.startswith("-D"))
+    script = f"read_verilog -formal {macros} -I{rtl} {' '.join(str(file) for file in sorted(rtl.glob('*.v')))}; "
     if chparam:
         script += f"chparam {chparam} {module}; "
     return script + f"prep -top {module} -flatten; async2sync; dffunmap; "

@@ -1,4 +1,5 @@
-// Synchro: the board's whole logic in one clock domain, registers.vh its map.
+// Synchro: the board's whole logic, registers.vh its map. All but the A-B accumulator runs at the seed clock `clk`;
+// clk_fast is the FPGA clock, two a seed clock, an edge of it with every edge of clk.
 //
 // host bytes -> frame_parser -> line_fifo (bits) and line queue (first slots) -> pulse_gate, paced by slot_divider and
 // line_sequencer; the axis by ab_generator; scanner_clock; watchdog and fault_latch close the gate.
@@ -13,6 +14,7 @@ module synchro #(
     parameter FIFO_BITS = 12
 ) (
     input wire clk,
+    input wire clk_fast,
     input wire rst,
     input wire write,
     input wire [7:0] address,
@@ -88,9 +90,9 @@ module synchro #(
   wire ab_refused;
   /* verilator lint_off PINCONNECTEMPTY */
   ab_generator axis (
-      .clk(clk), .rst(rst), .enable(control[1]), .load(command[1]), .load_increment(command[2]), .increment(increment),
+      .clk(clk), .clk_fast(clk_fast), .rst(rst), .enable(control[1]), .load(command[1]), .load_increment(command[2]), .increment(increment),
       .prescaler(prescaler), .fraction_num(fraction_num), .fraction_den(fraction_den), .a(a), .b(b),
-      .refused(ab_refused), .count()
+      .refused(ab_refused), .busy()
   );
 
   // From the host to whole lines.

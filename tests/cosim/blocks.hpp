@@ -18,12 +18,15 @@ namespace gravure::cosim {
 /// For every block: its model, and its ports in order. The visitor takes (name, member, width); the same list serves
 /// the model's structs and the members of the class that Verilator makes.
 
-template <int kBits, int kPrescalerBits, int kFractionBits>
-struct AbGeneratorPorts {
-  using Model = fpga::AbGenerator;
-  static Model make() {
-    return Model({.bits = kBits, .prescaler_bits = kPrescalerBits, .fraction_bits = kFractionBits});
-  }
+template <int kBits, int kPrescalerBits, int kFractionBits, int kSegmentBits, bool kFraction>
+struct AbPacerPorts {
+  using Model = fpga::AbPacer;
+  static constexpr Model::Widths kWidths{.bits = kBits,
+                                         .prescaler_bits = kPrescalerBits,
+                                         .fraction_bits = kFractionBits,
+                                         .fraction = kFraction,
+                                         .segment_bits = kSegmentBits};
+  static Model make() { return Model(kWidths); }
   template <class In, class Visitor>
   static void in(In& in, Visitor&& visit) {
     visit("rst", in.rst);
@@ -37,10 +40,48 @@ struct AbGeneratorPorts {
   }
   template <class Out, class Visitor>
   static void out(Out& out, Visitor&& visit) {
+    visit("due", out.due, 2);
+    visit("carry", out.carry, 2);
+    visit("step", out.step, kBits);
+    visit("refused", out.refused);
+    visit("busy", out.busy);
+  }
+};
+
+template <int kBits, int kSegmentBits>
+struct AbAccumulatorPorts {
+  using Model = fpga::AbAccumulator;
+  static Model make() { return Model({.bits = kBits, .segment_bits = kSegmentBits}); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("clear", in.clear);
+    visit("beat", in.beat);
+    visit("due", in.due, 2);
+    visit("carry", in.carry, 2);
+    visit("step", in.step, kBits);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("a", out.a);
+    visit("b", out.b);
+  }
+};
+
+template <int kBits, int kPrescalerBits, int kFractionBits, int kSegmentBits, bool kFraction>
+struct AbGeneratorPorts {
+  using Model = fpga::AbGenerator;
+  using Pacer = AbPacerPorts<kBits, kPrescalerBits, kFractionBits, kSegmentBits, kFraction>;
+  static Model make() { return Model(Pacer::kWidths); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    Pacer::in(in, visit);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
     visit("a", out.a);
     visit("b", out.b);
     visit("refused", out.refused);
-    visit("count", out.count, kBits);
+    visit("busy", out.busy);
   }
 };
 

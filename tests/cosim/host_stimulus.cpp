@@ -128,6 +128,10 @@ void HostStimulus::feed(Dice& dice) {
 }
 
 void HostStimulus::operator()(Dice& dice, std::span<std::uint64_t> in) {
+  held_ = !held_;
+  if (held_) {
+    return;  // every input stays for the two FPGA clocks of a seed clock
+  }
   const auto set = [&](const char* name, std::uint64_t value) { in[places_.at(name)] = value; };
   ++clock_;
   const bool reset = dice.one_in(50'000);

@@ -48,6 +48,7 @@ class HostStimulus {
   std::uint64_t line_ticks_ = 1;
   std::uint64_t lines_sent_ = 0;
   bool ready_ = false;
+  bool held_ = false;
 };
 
 }  // namespace gravure::cosim

@@ -13,11 +13,7 @@ constexpr std::uint32_t high_word(std::uint64_t value) noexcept {
 
 }  // namespace
 
-Synchro::Synchro(int fifo_bits)
-    : fifo_bits_(fifo_bits),
-      axis_({.bits = 32, .prescaler_bits = 32, .fraction_bits = 34}),
-      bits_(fifo_bits),
-      queue_(4) {}
+Synchro::Synchro(int fifo_bits) : fifo_bits_(fifo_bits), axis_(kAxisWidths), bits_(fifo_bits), queue_(4) {}
 
 void Synchro::write(Registers& r, std::uint8_t address, std::uint32_t data) noexcept {
   const auto low_half = static_cast<std::uint16_t>(data);
@@ -204,17 +200,10 @@ void Synchro::step_faults(const Inputs& in, const Wires& was, bool missing) noex
   now_.was_missing = missing && !in.rst && !clear;
 }
 
-Synchro::Outputs Synchro::step(const Inputs& in) noexcept {
+/// A seed clock: all but the axis.
+void Synchro::step_seed(const Inputs& in) noexcept {
   const Wires was = now_;
-  const std::uint32_t read_data = in.rst ? 0 : read(in.address);
-  now_.axis = axis_.step({.rst = in.rst,
-                          .enable = (registers_.control & 2U) != 0,
-                          .load = (registers_.command & 2U) != 0,
-                          .load_increment = (registers_.command & 4U) != 0,
-                          .increment = registers_.increment,
-                          .prescaler = registers_.prescaler,
-                          .fraction_num = registers_.fraction_num,
-                          .fraction_den = registers_.fraction_den});
+  now_.read_data = in.rst ? 0 : read(in.address);
   const bool missing =
       was.slots.slot && was.started && !was.line.running && registers_.slots_per_line != 0 && !was.queue.valid;
   step_stream(in, was);
@@ -226,12 +215,28 @@ Synchro::Outputs Synchro::step(const Inputs& in) noexcept {
   } else if (in.write) {
     write(registers_, in.address, in.write_data);
   }
-  return {.a = now_.axis.a,
-          .b = now_.axis.b,
+}
+
+Synchro::Outputs Synchro::step(const Inputs& in) noexcept {
+  const AbGenerator::Outputs axis = axis_.step({.rst = in.rst,
+                                                .enable = (registers_.control & 2U) != 0,
+                                                .load = (registers_.command & 2U) != 0,
+                                                .load_increment = (registers_.command & 4U) != 0,
+                                                .increment = registers_.increment,
+                                                .prescaler = registers_.prescaler,
+                                                .fraction_num = registers_.fraction_num,
+                                                .fraction_den = registers_.fraction_den});
+  if (seed_edge_) {
+    step_seed(in);
+  }
+  seed_edge_ = !seed_edge_;
+  now_.axis = axis;
+  return {.a = axis.a,
+          .b = axis.b,
           .gate = now_.gate.gate,
           .scan = now_.scanner.scan,
           .fault = now_.faults.fault,
-          .read_data = read_data};
+          .read_data = now_.read_data};
 }
 
 }  // namespace gravure::fpga

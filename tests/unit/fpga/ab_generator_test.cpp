@@ -20,25 +20,81 @@ AbGenerator::Inputs inputs_of(const AbRegisters& registers) {
           .fraction_den = registers.fraction_den};
 }
 
-TEST(AbGenerator, ShowsTheCounterOneClockLaterAfterALoad) {
+AbGenerator::Widths widths_of(const AbRegisters& registers) {
+  const int segment = registers.bits % 8 == 0 ? 8 : registers.bits;
+  return {.bits = registers.bits, .prescaler_bits = 64, .fraction_bits = 64, .segment_bits = segment};
+}
+
+/// A generator that counts: its load was on FPGA clock 0, the clocks since then are `steps`.
+struct Running {
+  explicit Running(const AbRegisters& registers)
+      : widths(widths_of(registers)), inputs(inputs_of(registers)), generator(widths) {
+    generator.step({.rst = true});
+    generator.step({.rst = true});
+    inputs.load = true;
+    generator.step(inputs);
+    inputs.load = false;
+  }
+  AbPins step() {
+    const AbGenerator::Outputs now = generator.step(inputs);
+    return {now.a, now.b};
+  }
+
+  AbGenerator::Widths widths;
+  AbGenerator::Inputs inputs;
+  AbGenerator generator;
+};
+
+TEST(AbGenerator, ShowsTheCounterItsLoadLatencyLater) {
   const std::uint64_t seed = random_seed();
   SCOPED_TRACE(testing::Message() << "rerun with GRAVURE_TEST_SEED=" << seed);
   Words words(seed);
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < 500; ++trial) {
     const AbRegisters registers = random_registers(words);
-    AbGenerator generator({.bits = registers.bits, .prescaler_bits = 64, .fraction_bits = 64});
-    AbGenerator::Inputs inputs = inputs_of(registers);
+    Running running(registers);
     auto counter = AbCounter::make(registers);
-    inputs.load = true;
-    EXPECT_FALSE(generator.step(inputs).refused);
-    inputs.load = false;
-    for (int clock = 1; clock <= 2000; ++clock) {
-      const AbPins before = counter->pins();
-      counter->step();
-      const AbGenerator::Outputs now = generator.step(inputs);
-      ASSERT_EQ(now.count, counter->counter());
-      ASSERT_TRUE((AbPins{now.a, now.b} == before)) << "clock " << clock;
+    for (int clock = 1; clock <= AbGenerator::load_latency(running.widths); ++clock) {
+      ASSERT_TRUE(running.step() == AbPins{}) << "clock " << clock;
     }
+    for (int clock = 1; clock <= 2000; ++clock) {
+      ASSERT_TRUE(running.step() == counter->step()) << "clock " << clock << " of trial " << trial;
+    }
+  }
+}
+
+TEST(AbGenerator, StandsItsEnableLatencyAfterEnableFalls) {
+  const AbRegisters registers{.bits = 32, .increment = std::uint64_t{1} << 30U};  // an edge on every clock
+  Running running(registers);
+  for (int clock = 1; clock < 101; ++clock) {
+    running.step();
+  }
+  running.inputs.enable = false;  // not looked at before FPGA clock 102, the next seed clock
+  AbPins before;
+  for (int clock = 101; clock < 200; ++clock) {
+    const AbPins now = running.step();
+    const bool stands = clock >= 102 + AbGenerator::enable_latency(running.widths);
+    if (clock > 101) {
+      ASSERT_EQ(now == before, stands) << "clock " << clock;
+    }
+    before = now;
+  }
+}
+
+TEST(AbGenerator, TakesAnIncrementItsIncrementLatencyLaterWithoutAGap) {
+  const AbRegisters registers{.bits = 32, .increment = 0};
+  Running running(registers);
+  for (int clock = 1; clock < 100; ++clock) {
+    running.step();
+  }
+  running.inputs.load_increment = true;
+  running.inputs.increment = std::uint64_t{1} << 30U;
+  AbPins before;
+  for (int clock = 100; clock < 200; ++clock) {  // 100 is a seed clock
+    const AbPins now = running.step();
+    running.inputs.load_increment = false;
+    const bool moves = clock >= 100 + AbGenerator::increment_latency(running.widths);
+    ASSERT_EQ(!(now == before), moves) << "clock " << clock;
+    before = now;
   }
 }
 
@@ -53,11 +109,29 @@ TEST(AbGenerator, RefusesExactlyWhatCheckRefuses) {
       registers.fraction_den = registers.fraction_num;
     }
     registers.prescaler = words.below(10);
-    AbGenerator generator({.bits = registers.bits, .prescaler_bits = 64, .fraction_bits = 64});
-    AbGenerator::Inputs inputs = inputs_of(registers);
-    inputs.load = true;
-    ASSERT_EQ(generator.step(inputs).refused, check(registers) != AbRefusal::none);
+    Running running(registers);
+    AbGenerator::Outputs now;
+    do {
+      now = running.generator.step(running.inputs);
+    } while (now.busy);
+    ASSERT_EQ(now.refused, check(registers) != AbRefusal::none);
   }
+}
+
+TEST(AbGenerator, RefusesALoadWhileOneIsUnderWay) {
+  Running running({.bits = 32, .increment = std::uint64_t{1} << 30U});
+  running.step();
+  running.inputs.load = true;
+  running.inputs.increment = 1;
+  running.step();
+  running.inputs.load = false;
+  AbGenerator::Outputs now;
+  for (int clock = 0; clock <= AbGenerator::load_latency(running.widths); ++clock) {
+    now = running.generator.step(running.inputs);
+  }
+  EXPECT_FALSE(now.busy);
+  const AbPins before{now.a, now.b};
+  EXPECT_FALSE(running.step() == before);  // the first load runs
 }
 
 }  // namespace

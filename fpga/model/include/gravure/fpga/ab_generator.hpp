@@ -1,58 +1,62 @@
 #pragma once
 
-#include <cstdint>
+#include "gravure/fpga/ab_accumulator.hpp"
+#include "gravure/fpga/ab_pacer.hpp"
 
 namespace gravure::fpga {
 
-/// Bit-exact model of fpga/rtl/ab_generator.v: one step() is one rising edge of the FPGA clock.
+/// Bit-exact model of fpga/rtl/ab_generator.v: one step() is one rising edge of the FPGA clock. The first step and
+/// every second after it are edges of the seed clock too; inputs are looked at then only.
 ///
-/// AbCounter is what this block does after one load; here are the load port, the checks and the output register too.
-/// A and B follow the counter by kLatency clocks. Values wider than their register are cut to it, like wires.
+/// AbCounter is what this block does after one load; here are the load port, the checks and the registers on the way.
 class AbGenerator {
  public:
-  static constexpr int kLatency = 1;  ///< clocks from AbCounter's pins to a and b
+  static constexpr int kClockMultiplier = 2;  ///< FPGA clocks a seed clock
 
-  struct Widths {
-    int bits = 32;
-    int prescaler_bits = 32;
-    int fraction_bits = 34;
-  };
-  struct Inputs {
-    bool rst = false;
-    bool enable = false;          ///< low: everything stands
-    bool load = false;            ///< takes all registers, starts a new count of clocks, keeps the counter
-    bool load_increment = false;  ///< takes the increment alone, without a gap
-    std::uint64_t increment = 0;
-    std::uint64_t prescaler = 0;
-    std::uint64_t fraction_num = 0;
-    std::uint64_t fraction_den = 0;
-  };
+  using Widths = AbPacer::Widths;
+  using Inputs = AbPacer::Inputs;
   struct Outputs {
     bool a = false;
     bool b = false;
     bool refused = false;  ///< the last load would have broken a rule and changed nothing
-    std::uint64_t count = 0;
+    bool busy = false;     ///< a load is under way, another would be refused
   };
 
-  explicit AbGenerator(const Widths& widths) noexcept;
-  Outputs step(const Inputs& inputs) noexcept;
+  /// Clocks from the one that takes a load, without the clock itself: AbCounter's pins after its clock c show just
+  /// after load_latency() + c more.
+  static constexpr int load_latency(const Widths& widths) noexcept {
+    return kClockMultiplier * AbPacer::kLoadClocks + AbAccumulator::word_latency(widths) - 1;
+  }
+  /// Clocks until `enable` shows on the pins.
+  static constexpr int enable_latency(const Widths& widths) noexcept {
+    return kClockMultiplier * AbPacer::kDueLatency + AbAccumulator::word_latency(widths);
+  }
+  /// Clocks until a new increment does.
+  static constexpr int increment_latency(const Widths& widths) noexcept {
+    return kClockMultiplier * AbPacer::kStepLatency + AbAccumulator::word_latency(widths);
+  }
+
+  explicit AbGenerator(const Widths& widths) noexcept : pacer_(widths), accumulator_(widths) {}
+
+  Outputs step(const Inputs& inputs) noexcept {
+    const AbPins pins =
+        accumulator_.step({.clear = clear_, .beat = beat_, .due = word_.due, .carry = word_.carry, .step = word_.step});
+    if (seed_edge_) {
+      beat_ = !inputs.rst && !beat_;
+      clear_ = inputs.rst;
+      word_ = pacer_.step(inputs);
+    }
+    seed_edge_ = !seed_edge_;
+    return {.a = pins.a, .b = pins.b, .refused = word_.refused, .busy = word_.busy};
+  }
 
  private:
-  bool increment_fits(std::uint64_t increment, std::uint64_t num) const noexcept;
-  void advance() noexcept;
-  void load(const Inputs& inputs) noexcept;
-
-  std::uint64_t count_mask_;
-  std::uint64_t prescaler_mask_;
-  std::uint64_t fraction_mask_;
-  unsigned quarter_shift_;
-  std::uint64_t step_ = 0;
-  std::uint64_t period_ = 1;
-  std::uint64_t phase_ = 0;
-  std::uint64_t num_ = 0;
-  std::uint64_t den_minus_num_ = 1;
-  std::uint64_t acc_ = 0;
-  Outputs out_;
+  AbPacer pacer_;
+  AbAccumulator accumulator_;
+  AbPacer::Outputs word_;
+  bool seed_edge_ = true;
+  bool beat_ = false;
+  bool clear_ = false;
 };
 
 }  // namespace gravure::fpga

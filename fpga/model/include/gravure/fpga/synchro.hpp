@@ -16,10 +16,12 @@
 namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/synchro.v, the board's whole logic, made of the models of its blocks: one step() is one
-/// rising edge. docs/registers.md has the register map.
+/// rising edge of the FPGA clock. The first step and every second after it are edges of the seed clock too; inputs are
+/// looked at then only, and only the pins of the axis move in between. docs/registers.md has the register map.
 class Synchro {
  public:
-  /// Clocks from the first tick of a slot to `gate`: divider, sequencer, gate.
+  static constexpr AbGenerator::Widths kAxisWidths{.bits = 32, .prescaler_bits = 32, .fraction_bits = 34};
+  /// Seed clocks from the first tick of a slot to `gate`: divider, sequencer, gate.
   static constexpr int kSlotToGate = 1 + LineSequencer::kLatency + SlotGate::kLatency;
 
   struct Inputs {
@@ -78,10 +80,12 @@ class Synchro {
     bool queue_commit = false;
     bool started = false;
     bool was_missing = false;
+    std::uint32_t read_data = 0;
   };
 
   static void write(Registers& registers, std::uint8_t address, std::uint32_t data) noexcept;
   std::uint32_t read(std::uint8_t address) const noexcept;
+  void step_seed(const Inputs& in) noexcept;
   void step_stream(const Inputs& in, const Wires& was) noexcept;
   void step_lines(const Inputs& in, const Wires& was) noexcept;
   void step_faults(const Inputs& in, const Wires& was, bool missing) noexcept;
@@ -89,6 +93,7 @@ class Synchro {
   bool acknowledge() const noexcept { return (registers_.command & 1U) != 0; }
 
   int fifo_bits_;
+  bool seed_edge_ = true;
   Registers registers_;
   Wires now_;
   AbGenerator axis_;

@@ -1,0 +1,252 @@
+// A-B pacer: decides, one seed clock ahead, on which of the next two FPGA clocks a counter steps and by how much.
+//
+// Clocks of the FPGA (two a seed clock, CLOCK_MULTIPLIER) count from 1 after a load. On those that are multiples of the
+// prescaler ([B] eqs 1 and 2, with a fraction that makes every ratio exact):
+//   acc += num; carry = acc >= den; acc -= carry * den; count += increment + carry.
+// Here the accumulator is x = K num mod den of the next step K, and its carry is x < num. With prescaler 1 both clocks
+// step, so that two accumulators, x of the odd and y of the even steps, go on by 2 num mod den each.
+//
+// enable          low: everything stands
+// load            takes all registers, LOAD_CLOCKS seed clocks later; starts a new count with acc = 0
+// load_increment  takes the increment alone, without a gap
+// busy            a load is under way; a load or load_increment now is refused
+// refused         sticky until a load is taken or reset: a load that would move A and B together, or whose fraction is
+//                 no proper one (or any, with FRACTION 0), or with prescaler 0, changes nothing
+// due, carry      bit 0 the first FPGA clock, bit 1 the second; with them goes `step`, the increment
+//
+// Latency in seed clocks, from the one that takes an input to the one after which the output shows: enable to due 3, load
+// to the due of its clock 1 8 (LOAD_CLOCKS), load_increment to step 1. Reset: standing, increment 0.
+`default_nettype none
+module ab_pacer #(
+    parameter BITS = 32,
+    parameter PRESCALER_BITS = 32,
+    parameter FRACTION_BITS = 34,
+    parameter FRACTION = 1
+) (
+    input wire clk,
+    input wire rst,
+    input wire enable,
+    input wire load,
+    input wire load_increment,
+    input wire [BITS-1:0] increment,
+    input wire [PRESCALER_BITS-1:0] prescaler,
+    input wire [FRACTION_BITS-1:0] fraction_num,
+    input wire [FRACTION_BITS-1:0] fraction_den,
+    output reg [1:0] due,
+    output reg [1:0] carry,
+    output reg [BITS-1:0] step,
+    output reg refused,
+    output wire busy
+);
+  localparam P = PRESCALER_BITS;
+  localparam F = FRACTION_BITS;
+  localparam [P-1:0] TWO = 2;
+  localparam [BITS-1:0] QUARTER = {2'b01, {(BITS - 2) {1'b0}}};  // 2^(BITS-2)
+
+  // A load passes eight stages. 0: taken aside; 1, 2: checked; 3..7: put in force, each at the stage that uses it, behind
+  // the last word of the registers before.
+  reg [7:0] loading;
+  assign busy = loading != 0;
+  reg [BITS-1:0] new_step;
+  reg [P-1:0] new_period;
+  reg [F-1:0] new_num, new_den;
+  reg new_over, new_quarter, new_zero, new_one;
+  reg [P-1:0] new_period_less;
+  reg new_ok;
+  wire over = increment > QUARTER;
+  wire quarter = increment == QUARTER;
+
+  reg has_fraction;  // of the registers that `step` belongs to
+  reg [BITS-1:0] next_step;
+  reg next_step_ok, next_step_bad;
+
+  // Pace: FPGA clocks until the next step.
+  reg [P-1:0] left, period, period_less;
+  reg every;
+  wire first_due = left == 1;
+  wire second_due = left == 2 || (first_due && every);
+  wire [1:0] paced;
+  reg [1:0] pace_due;
+  assign paced = {second_due, first_due} & {2{enable}};
+
+  wire fraction_ok, fraction_off;
+  wire [1:0] carried;
+  reg [1:0] add_due, word_due;
+
+  always @(posedge clk) begin
+    if (rst) begin
+      loading <= 8'd0;
+      left <= 1;
+      period <= 1;
+      period_less <= 0;
+      every <= 1'b1;
+      pace_due <= 2'd0;
+      add_due <= 2'd0;
+      word_due <= 2'd0;
+      due <= 2'd0;
+      carry <= 2'd0;
+      step <= 0;
+      has_fraction <= 1'b0;
+      next_step_ok <= 1'b0;
+      next_step_bad <= 1'b0;
+      refused <= 1'b0;
+      new_ok <= 1'b0;
+    end else begin
+      loading <= {loading[6:3], loading[2] && new_ok, loading[1:0], load && !busy};
+      new_ok <= !new_over && !new_zero && fraction_ok && (fraction_off || !new_quarter);
+
+      pace_due <= paced;
+      if (loading[3]) begin
+        left <= new_period;
+        period <= new_period;
+        period_less <= new_period_less;
+        every <= new_one;
+      end else if (enable) begin
+        left <= first_due ? (every ? period : period_less) : left == 2 ? period : left - TWO;
+      end
+      add_due <= pace_due;
+      word_due <= add_due;
+      due <= word_due;
+      carry <= carried & word_due;
+
+      next_step_ok <= load_increment && !load && !busy && !over && !(quarter && has_fraction);
+      next_step_bad <= (load_increment && !load && !busy && (over || (quarter && has_fraction))) ||
+                       (busy && (load || load_increment));
+      if (loading[7]) begin
+        step <= new_step;
+        has_fraction <= !fraction_off;
+      end else if (next_step_ok) step <= next_step;
+      if (loading[2]) refused <= !new_ok;
+      if (next_step_ok) refused <= 1'b0;
+      if (next_step_bad) refused <= 1'b1;
+    end
+    next_step <= increment;
+    if (load && !busy) begin
+      new_step <= increment;
+      new_period <= prescaler;
+      new_num <= fraction_num;
+      new_den <= fraction_den;
+      new_over <= over;
+      new_quarter <= quarter;
+    end
+    new_zero <= new_period == 0;
+    new_one <= new_period == 1;
+    new_period_less <= new_period - 1'b1;
+  end
+
+  generate
+    if (FRACTION != 0) begin : with_fraction
+      reg [F:0] rest;    // den - num, with its sign
+      reg [F:0] twice;   // 2 num - den, with its sign
+      reg [F-1:0] num_2, rest_2;  // 2 num mod den, and den less that
+      reg num_zero;
+      reg [F-1:0] x, y, addend, below, add_x, add_y, num;
+      reg two;
+      reg [1:0] less;
+      assign fraction_ok = !rest[F] && rest != 0;
+      assign fraction_off = num_zero;
+      assign carried = less;
+      wire wraps = !twice[F];
+      always @(posedge clk) begin
+        rest <= {1'b0, new_den} - {1'b0, new_num};
+        num_zero <= new_num == 0;
+        twice <= {1'b0, new_num} - {1'b0, rest[F-1:0]};
+        num_2 <= wraps ? twice[F-1:0] : {new_num[F-2:0], 1'b0};
+        rest_2 <= wraps ? {rest[F-2:0], 1'b0} : {F{1'b0}} - twice[F-1:0];
+        if (rst) begin
+          x <= 0;
+          y <= 0;
+          addend <= 0;
+          below <= 1;
+          two <= 1'b1;
+          num <= 0;
+        end else begin
+          if (loading[4]) begin
+            x <= new_num;
+            y <= num_2;
+            addend <= new_one ? num_2 : new_num;
+            below <= new_one ? rest_2 : rest[F-1:0];
+            two <= new_one;
+          end else if (pace_due != 0) begin
+            x <= x >= below ? x - below : x + addend;
+            y <= y >= below ? y - below : y + addend;
+          end
+          if (loading[5]) num <= new_num;
+        end
+        add_x <= x;
+        add_y <= two ? y : x;
+        less <= rst ? 2'd0 : {add_y < num, add_x < num};
+      end
+    end else begin : without_fraction
+      reg num_zero;
+      assign fraction_ok = num_zero;
+      assign fraction_off = num_zero;
+      assign carried = 2'd0;
+      always @(posedge clk) num_zero <= new_num == 0 && new_den != 0;
+    end
+  endgenerate
+`ifdef FORMAL
+  // The contract as it stands above, clock by clock, one FPGA clock after the other; `due` and `carry` follow it.
+  reg [P-1:0] ref_phase, ref_period;
+  reg [F-1:0] ref_acc, ref_num, ref_den;
+  wire ref_due_0 = enable && ref_phase + 1'b1 == ref_period;
+  wire [P-1:0] ref_phase_0 = ref_due_0 ? {P{1'b0}} : ref_phase + 1'b1;
+  wire ref_due_1 = enable && ref_phase_0 + 1'b1 == ref_period;
+  wire [P-1:0] ref_phase_1 = ref_due_1 ? {P{1'b0}} : ref_phase_0 + 1'b1;
+  wire [F:0] ref_sum_0 = {1'b0, ref_acc} + (ref_due_0 ? {1'b0, ref_num} : {(F + 1) {1'b0}});
+  wire ref_carry_0 = ref_sum_0 >= {1'b0, ref_den};
+  wire [F:0] ref_acc_0 = ref_carry_0 ? ref_sum_0 - {1'b0, ref_den} : ref_sum_0;
+  wire [F:0] ref_sum_1 = ref_acc_0 + (ref_due_1 ? {1'b0, ref_num} : {(F + 1) {1'b0}});
+  wire ref_carry_1 = ref_sum_1 >= {1'b0, ref_den};
+  wire [F:0] ref_acc_1 = ref_carry_1 ? ref_sum_1 - {1'b0, ref_den} : ref_sum_1;
+  reg [3:0] ref_0, ref_1, ref_2, ref_3;
+  reg valid = 1'b0;
+  initial assume (rst);
+  always @(posedge clk) begin
+    valid <= 1'b1;
+    ref_0 <= {ref_carry_1, ref_carry_0, ref_due_1, ref_due_0};
+    ref_1 <= ref_0;
+    ref_2 <= ref_1;
+    ref_3 <= ref_2;
+    if (rst) begin
+      ref_phase <= 0;
+      ref_period <= 1;
+      ref_acc <= 0;
+      ref_num <= 0;
+      ref_den <= 1;
+      {ref_0, ref_1, ref_2, ref_3} <= 16'd0;
+    end else if (loading[3]) begin
+      ref_phase <= 0;
+      ref_period <= new_period;
+      ref_acc <= 0;
+      ref_num <= new_num;
+      ref_den <= new_den;
+    end else if (enable) begin
+      ref_phase <= ref_phase_1;
+      ref_acc <= ref_acc_1[F-1:0];
+    end
+  end
+  always @(*) if (valid) begin
+    assert (step <= QUARTER);
+    if (carry != 0) assert (step < QUARTER);  // so that A and B never move together
+    assert ((carry & ~due) == 0);
+    // What makes that inductive: a load is checked before it is in force, and no fraction is added without one.
+    assert ((loading & (loading - 1'b1)) == 0);
+    if (busy) assert (new_over == (new_step > QUARTER) && new_quarter == (new_step == QUARTER));
+    if (loading[7:1] != 0) assert (fraction_off == (new_num == 0));
+    if (loading[2]) assert (!new_ok || (!new_over && (fraction_off || !new_quarter)));
+    if (loading[7:3] != 0) assert (!new_over && (fraction_off || !new_quarter));
+    if (has_fraction) assert (step < QUARTER);
+    if (!has_fraction) assert (carry == 0);
+    if (next_step_ok) assert (next_step <= QUARTER && !(has_fraction && next_step == QUARTER) && loading[7:1] == 0);
+    if (loading[7:6] != 0) assert (with_fraction.num == new_num);
+    if (!has_fraction && loading[7:6] == 0) assert (with_fraction.num == 0);
+    if (!has_fraction && !loading[7]) assert (carried == 0);
+    if (loading[7] && fraction_off) assert (carried == 0);
+`ifdef FORMAL_CONTRACT
+    assert ({carry, due} == ref_3);
+`endif
+  end
+`endif
+endmodule
+`default_nettype wire
