@@ -83,14 +83,15 @@ Interference find_interference(const ToolPose& tool, const ToolShape& shape, std
 }
 
 Result<Cleared> turn_clear(const ToolPose& tool, const ToolShape& shape, std::span<const Vector3> points,
-                           double margin_mm, double ball_radius_mm, double c_step_rad, double c_most_rad) {
+                           double margin_mm, double ball_radius_mm, double c_step_rad, double c_most_rad,
+                           TurnFirst first) {
   GRAVURE_CHECK(check_range("c_step_rad", c_step_rad, 1e-9, 7));
   GRAVURE_CHECK(check_range("c_most_rad", c_most_rad, 0, 1e4 * c_step_rad));
   const double a = std::atan2(std::hypot(tool.axis[0], tool.axis[1]), tool.axis[2]);
   const double c = std::atan2(tool.axis[0], tool.axis[1]);
   double least_depth = std::numeric_limits<double>::infinity();
   for (int step = 0; step * c_step_rad <= c_most_rad * (1 + 1e-12); ++step) {
-    for (const double side : {1.0, -1.0}) {
+    for (const double side : {static_cast<double>(first), -static_cast<double>(first)}) {
       const double turned = side * step * c_step_rad;
       const ToolPose moved = step == 0 ? tool : tilted(tool, ball_radius_mm, a, c + turned);
       const Interference found = find_interference(moved, shape, points, margin_mm);

@@ -72,13 +72,13 @@ std::vector<std::size_t> intended_turns(std::span<const double> angle, double pr
     low = angle[k] < angle[low] ? k : low;
     high = angle[k] > angle[high] ? k : high;
     if (sense >= 0 && angle[high] - angle[k] > prominence) {  // it has turned down for good
-      if (high > turns.back()) {
+      if (sense != 0 && high > turns.back()) {  // what comes before the first such stretch is smaller
         turns.push_back(high);
       }
       sense = -1;
       low = high = k;
     } else if (sense <= 0 && angle[k] - angle[low] > prominence) {
-      if (low > turns.back()) {
+      if (sense != 0 && low > turns.back()) {
         turns.push_back(low);
       }
       sense = 1;

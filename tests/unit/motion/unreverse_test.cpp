@@ -239,6 +239,14 @@ TEST(PublishedShift, EndsWithoutReversalsButDrifts) {
   EXPECT_LT(anchored.largest_deviation, 0.6);
 }
 
+TEST(IntendedTurns, LeaveOutASmallDipAtEitherEnd) {
+  const std::vector<double> path{0, -0.1, 2, 4, 3.9, 5, 4.9};
+  EXPECT_EQ(intended_turns(path, 0.5), (std::vector<std::size_t>{0, 6}));
+  const std::vector<double> mirrored{0, 0.1, -2, -4, -3.9, -5, -4.9};
+  EXPECT_EQ(intended_turns(mirrored, 0.5), (std::vector<std::size_t>{0, 6}));
+  EXPECT_EQ(intended_turns(path, 0.05), (std::vector<std::size_t>{0, 1, 3, 4, 5, 6}));
+}
+
 TEST(Unwrap, CountsTurnsAndKeepsHalfTurnsTheWayTheyWere) {
   const std::vector<double> wrapped{170, -170, -90, 0, 90, 179, -179};
   const std::vector<double> whole = unwrapped(wrapped, 360);

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "gravure/motion/five_axis.hpp"
@@ -33,6 +34,9 @@ struct RuledBlade {
 std::vector<Vector3> sample_sides(const RuledBlade& blade, double u_from, double u_to, std::size_t along,
                                   std::size_t across);
 
+/// Points of a surface from elsewhere: x, y and z in mm in the workpiece's frame, in the form of parse_recording_csv().
+Result<std::vector<Vector3>> parse_points_csv(std::string_view text);
+
 /// What must not touch the blades: a cylinder (or cone) about the tool axis, or the cone of a focused beam.
 struct ToolShape {
   double radius_mm = 0;      ///< at the tip
@@ -60,10 +64,14 @@ struct Cleared {
   double turned_rad = 0;  ///< from the wanted one
 };
 
+/// Which way to turn first; both are tried at every step.
+enum class TurnFirst : std::int8_t { up = 1, down = -1 };
+
 /// The nearest free pose by increments of c to either side, up to `c_most_rad` ([C2]: 1 to 2 degrees a step), the ball
 /// (or focus) held where it is. Fails with out_of_range, naming the depth that is left, where none is free: a slimmer
 /// tool or another tilt is needed.
 Result<Cleared> turn_clear(const ToolPose& tool, const ToolShape& shape, std::span<const Vector3> points,
-                           double margin_mm, double ball_radius_mm, double c_step_rad, double c_most_rad);
+                           double margin_mm, double ball_radius_mm, double c_step_rad, double c_most_rad,
+                           TurnFirst first = TurnFirst::up);
 
 }  // namespace gravure::motion

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "gravure/motion/ruled_blade.hpp"
+#include "gravure/motion/unreverse.hpp"
+
+namespace gravure::motion {
+
+/// Surfaces the tool (or the cone of a beam) must stay clear of, and how far C may be turned out of the way.
+struct Surroundings {
+  std::span<const Vector3> points;  ///< in the workpiece's frame; none: nothing is tested
+  ToolShape shape;
+  double margin_mm = 0;
+  double c_step_rad = 0.026;  ///< 1 to 2 degrees are published
+  double c_most_rad = 0.5;
+};
+
+struct SmoothPathRequest {
+  std::span<const ToolPose> path;  ///< tip (or focus) and direction, as wanted
+  std::span<const double> a_deg;   ///< the axes that stand so, C unwrapped
+  std::span<const double> c_deg;
+  std::span<const double> parameter;  ///< rising strictly
+  double tolerance_deg = 0;
+  std::size_t control_points = 16;
+  double ball_radius_mm = 0;  ///< its centre is held; 0 holds the tip or the focus
+  Surroundings around;
+};
+
+struct SmoothPath {
+  Unreversed a;
+  Unreversed c;                 ///< its deviations are from the wanted C, turns out of the way included
+  std::vector<ToolPose> tools;  ///< with the new angles, the ball where it was
+  std::size_t turned_samples = 0;
+  double largest_turn_deg = 0;  ///< of C out of the way
+  double clearance_mm = 0;      ///< least, infinite without points
+  std::size_t rounds = 0;       ///< of smoothing
+};
+
+/// The loop of [C2] with bounds: reversals are removed from A and C, tool (or focus) centres are computed anew, every
+/// sample is tested against the surroundings; where one touches, C is turned by increments until it is free, and the
+/// path is smoothed again, until all samples are free.
+/// Fails like remove_reversals() and turn_clear(), naming the sample; with out_of_range where samples still touch after
+/// 8 rounds.
+Result<SmoothPath> smooth_tool_path(const SmoothPathRequest& request);
+
+}  // namespace gravure::motion

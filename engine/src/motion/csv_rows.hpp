@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "gravure/core/error.hpp"
+
+namespace gravure::motion {
+
+/// What the columns of a CSV text mean, for messages.
+struct CsvColumns {
+  std::string_view subject;  ///< "recording"
+  std::string_view meaning;  ///< "time in s and acceleration in mm/s^2, two numbers"
+  std::size_t count = 2;     ///< at most 3; further ones are not read
+};
+
+/// Calls `row` with the numbers of each line, separated by comma, semicolon, tab or blanks. A first line that is not
+/// numbers is a heading; lines that start with # are comments. bad_file names the line that is anything else, and more
+/// than 10 million rows.
+Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
+                           const std::function<void(std::span<const double>)>& row);
+
+}  // namespace gravure::motion

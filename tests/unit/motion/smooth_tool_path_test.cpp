@@ -1,0 +1,98 @@
+#include "gravure/motion/smooth_tool_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace gravure::motion {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+/// A focus that travels along y between two walls at x = -6 and x = 6, the beam tilted by 20 degrees; C wobbles by half
+/// a degree about 0 and so does A.
+struct Channel {
+  std::vector<double> s;
+  std::vector<double> a;
+  std::vector<double> c;
+  std::vector<ToolPose> path;
+  std::vector<Vector3> walls;
+
+  explicit Channel(double wall_from_y_mm, double lean_deg = 0) {
+    for (int k = 0; k <= 200; ++k) {
+      s.push_back(k);
+      a.push_back(20 + 0.02 * k + 0.3 * std::sin(0.4 * k));
+      c.push_back(lean_deg + 0.05 * k + 0.4 * std::sin(0.3 * k));
+      const double ar = a.back() * kDegree;
+      const double cr = c.back() * kDegree;
+      path.push_back({{0, 0.2 * k, 0}, {std::sin(ar) * std::sin(cr), std::sin(ar) * std::cos(cr), std::cos(ar)}});
+    }
+    for (double y = wall_from_y_mm; y <= 80; y += 0.5) {
+      for (double z = 0; z <= 40; z += 0.5) {
+        walls.push_back({-6, y, z});
+        walls.push_back({6, y, z});
+      }
+    }
+  }
+
+  SmoothPathRequest request() const {
+    SmoothPathRequest r{path, a, c, s, 1, 16, 0, {}};
+    r.around = {walls, {0.5, 0.05, 40, 0}, 0.4, 1.5 * kDegree, 60 * kDegree};
+    return r;
+  }
+};
+
+TEST(SmoothToolPath, RemovesReversalsAndHoldsTheFocus) {
+  const Channel channel(0);
+  const SmoothPath smooth = smooth_tool_path(channel.request()).value();
+  EXPECT_GT(smooth.a.reversals_before, 10U);
+  EXPECT_EQ(smooth.a.reversals_after, 0U);
+  EXPECT_EQ(smooth.c.reversals_after, 0U);
+  EXPECT_LE(smooth.c.largest_deviation, 1);
+  EXPECT_EQ(smooth.turned_samples, 0U);
+  EXPECT_EQ(smooth.rounds, 1U);
+  EXPECT_GT(smooth.clearance_mm, 0);
+  for (std::size_t k = 0; k < channel.path.size(); ++k) {
+    EXPECT_EQ(smooth.tools[k].centre_mm, channel.path[k].centre_mm);
+    EXPECT_NEAR(std::atan2(smooth.tools[k].axis[0], smooth.tools[k].axis[1]), smooth.c.angle[k] * kDegree, 1e-12);
+  }
+}
+
+TEST(SmoothToolPath, TurnsCOutOfTheWayWhereTheBeamTouchesAndNowhereElse) {
+  const Channel channel(25, 25);  // leans sideways; the walls begin half-way
+  const SmoothPathRequest request = channel.request();
+  const SmoothPath smooth = smooth_tool_path(request).value();
+  EXPECT_GT(smooth.turned_samples, 10U);
+  EXPECT_LT(smooth.turned_samples, channel.path.size());
+  EXPECT_GT(smooth.rounds, 1U);
+  EXPECT_GT(smooth.largest_turn_deg, 1);
+  for (const ToolPose& tool : smooth.tools) {
+    EXPECT_FALSE(find_interference(tool, request.around.shape, channel.walls, request.around.margin_mm).touches);
+  }
+  EXPECT_NEAR(smooth.c.angle[20], channel.c[20], 1);
+  EXPECT_LE(smooth.c.largest_deviation, smooth.largest_turn_deg + 1);
+}
+
+TEST(SmoothToolPath, SaysWhichSampleCannotBeFreed) {
+  const Channel channel(25);
+  SmoothPathRequest request = channel.request();
+  request.around.shape.radius_mm = 7;
+  const auto refused = smooth_tool_path(request);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+  EXPECT_NE(refused.error().message.find("sample "), std::string::npos);
+  EXPECT_NE(refused.error().message.find("slimmer"), std::string::npos);
+  request.path = std::span(channel.path).first(5);
+  EXPECT_FALSE(smooth_tool_path(request));
+}
+
+TEST(PointsCsv, ReadsThreeColumnsAndNamesTheLineThatIsNone) {
+  const auto points = parse_points_csv("x,y,z\n1,2,3\n# wall\n-1; 0.5\t7\n").value();
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[1][2], 7);
+  EXPECT_NE(parse_points_csv("1,2,3\n1,2\n").error().message.find("line 2"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gravure::motion
