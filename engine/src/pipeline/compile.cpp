@@ -7,6 +7,7 @@
 #include <new>
 #include <numeric>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include "gravure/raster/place.hpp"
@@ -61,17 +62,26 @@ class TaskList {
   std::int64_t groups_;
 };
 
-/// Everything one worker holds beside what waits in the writer.
+constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+
+/// Everything one worker holds beside its panel and what waits in the writer.
 std::int64_t worker_bytes(const LayerStack& stack, std::int64_t lines_per_chunk) {
   const std::int64_t chunk = lines_per_chunk * row_bytes(SampleType::bit, stack.pixels);
-  const std::int64_t samples =
-      stack.samples == SampleType::bit ? 0 : lines_per_chunk * row_bytes(stack.samples, stack.pixels);
-  constexpr std::int64_t kDecoder = std::int64_t{8} << 20;  // a strip or row block in the reader, and its library
-  return 3 * chunk + samples + kDecoder;                    // as read, as placed, as packed
+  constexpr std::int64_t kCodec = 3 * kMiB;  // what packs a chunk, and the thread itself
+  return 4 * chunk + kCodec + LayerReader::fixed_bytes(stack, lines_per_chunk);  // as read, placed, packed twice
 }
 
-std::int64_t least_panel_bytes(const LayerStack& stack) {
-  return stack.lines_along == LinesAlong::columns ? 16 * row_bytes(stack.samples, stack.pixels) : 0;
+/// What a worker must have: its panel is three quarters of what it has to spare.
+std::int64_t least_worker_bytes(const LayerStack& stack, std::int64_t lines_per_chunk) {
+  return worker_bytes(stack, lines_per_chunk) + LayerReader::least_panel_bytes(stack) * 4 / 3;
+}
+
+/// What the program takes once, whoever writes it: the tables of its chunks, the library of its format.
+std::int64_t program_bytes(const LayerStack& stack, std::int64_t lines_per_chunk) {
+  constexpr std::int64_t kLibrary = 2 * kMiB;
+  constexpr std::int64_t kTablesPerChunk = 64;
+  const std::int64_t chunks = (stack.lines + lines_per_chunk - 1) / std::max<std::int64_t>(1, lines_per_chunk);
+  return kLibrary + kTablesPerChunk * chunks * static_cast<std::int64_t>(stack.layers.size());
 }
 
 struct Budget {
@@ -80,19 +90,29 @@ struct Budget {
   std::int64_t ahead_bytes;
 };
 
+std::string whole_mib(std::int64_t bytes) {
+  return std::to_string((bytes + kMiB - 1) / kMiB) + " MiB";
+}
+
 Result<Budget> divide_budget(const LayerStack& stack, const Geometry& geometry, const CompileOptions& options) {
   const std::int64_t least = least_compile_memory(stack, geometry.lines_per_chunk);
   if (options.memory_bytes < least) {
-    constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+    const std::int64_t decoder = stack.decoder_bytes.value_or(0);
+    std::string remedy = ": raise --memory";
+    if (decoder > least / 2) {
+      remedy = ", " + whole_mib(decoder) +
+               " of them to decode the largest strip or row of tiles: raise --memory, or rewrite TIFF files in small "
+               "strips with `tiffcp -s -r 64`";
+    }
     return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options.memory_bytes / kMiB) +
-                                              " MiB: these images need at least " +
-                                              std::to_string((least + kMiB - 1) / kMiB) + " MiB"};
+                                              " MiB: these images need at least " + whole_mib(least) + remedy};
   }
   const int wanted = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const std::int64_t fit = std::max<std::int64_t>(1, options.memory_bytes / least);
+  const std::int64_t workers_bytes = options.memory_bytes - program_bytes(stack, geometry.lines_per_chunk);
+  const std::int64_t fit = workers_bytes / least_worker_bytes(stack, geometry.lines_per_chunk);
   Budget budget{};
   budget.threads = static_cast<int>(std::clamp<std::int64_t>(wanted, 1, fit));
-  const std::int64_t spare = options.memory_bytes - budget.threads * worker_bytes(stack, geometry.lines_per_chunk);
+  const std::int64_t spare = workers_bytes - budget.threads * worker_bytes(stack, geometry.lines_per_chunk);
   budget.ahead_bytes = spare / 4;
   budget.panel_bytes = (spare - budget.ahead_bytes) / budget.threads;
   return budget;
@@ -115,8 +135,11 @@ class Compiler {
   Result<void> run() {
     std::vector<std::thread> workers;
     const auto count = static_cast<int>(std::min<std::int64_t>(budget_.threads, tasks_.size()));
-    for (int i = 1; i < count; ++i) {
-      workers.emplace_back([this] { work(); });
+    try {
+      for (int i = 1; i < count; ++i) {
+        workers.emplace_back([this] { work(); });
+      }
+    } catch (const std::system_error&) {  // no more threads to be had: those there are do it
     }
     work();
     for (std::thread& worker : workers) {
@@ -213,11 +236,17 @@ class Compiler {
 }  // namespace
 
 std::int64_t least_compile_memory(const LayerStack& stack, std::int64_t lines_per_chunk) {
-  return worker_bytes(stack, lines_per_chunk) + least_panel_bytes(stack) * 4 / 3;
+  return program_bytes(stack, lines_per_chunk) + least_worker_bytes(stack, lines_per_chunk);
 }
 
-Result<ProgramHeader> compile(ProgramHeader header, const LayerStack& stack, const ImageOpener& opener, LineSink& sink,
+Result<ProgramHeader> compile(ProgramHeader header, const LayerStack& given, const ImageOpener& opener, LineSink& sink,
                               const CompileOptions& options) {
+  LayerStack stack = given;
+  if (!stack.decoder_bytes) {
+    learn_images(stack, opener);
+    stack.samples = given.samples;  // what the plan was made with; a file that differs now is refused when it is read
+    stack.random_access = given.random_access;
+  }
   const Geometry geometry{static_cast<std::int64_t>(stack.layers.size()), stack.lines, header.line_bytes(),
                           sink.lines_per_chunk()};
   GRAVURE_TRY(const Budget budget, divide_budget(stack, geometry, options));

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <set>
+#include <string_view>
+#include <utility>
 
 #include "gravure/raster/threshold.hpp"
 #include "gravure/raster/transpose.hpp"
@@ -11,7 +14,7 @@
 namespace gravure {
 namespace {
 
-constexpr std::int64_t kBandBytes = std::int64_t{4} << 20;  // rows decoded at a time while a panel is collected
+constexpr std::int64_t kBandBytes = std::int64_t{4} << 20;  // a band of rows while a panel is collected
 
 std::int64_t bytes_per_sample(SampleType samples) {
   return row_bytes(samples, 1);
@@ -20,6 +23,16 @@ std::int64_t bytes_per_sample(SampleType samples) {
 /// Bytes a line of the stack takes while it is held.
 std::int64_t held_line_bytes(const LayerStack& stack) {
   return row_bytes(stack.samples, stack.pixels);
+}
+
+/// Rows of the image decoded at a time while a panel is collected.
+std::int64_t band_rows_of(const LayerStack& stack) {
+  return std::clamp<std::int64_t>(kBandBytes / std::max<std::int64_t>(1, row_bytes(stack.samples, stack.lines)), 1,
+                                  std::max<std::int64_t>(1, stack.pixels));
+}
+
+std::int64_t band_bytes(const LayerStack& stack) {
+  return band_rows_of(stack) * row_bytes(stack.samples, stack.lines);
 }
 
 std::uint32_t integer_maximum(SampleType samples) {
@@ -69,6 +82,29 @@ std::span<const T> samples_as(std::span<const std::byte> bytes) {
 
 }  // namespace
 
+void learn_images(LayerStack& stack, const ImageOpener& opener) {
+  std::set<std::pair<std::string_view, std::int64_t>> seen;
+  std::int64_t most = 0;
+  bool first = true;
+  bool random_access = true;
+  for (const LayerInput& input : stack.layers) {
+    if (!seen.emplace(input.path, input.page).second) {
+      continue;
+    }
+    const Result<std::unique_ptr<ImageSource>> opened = opener.open(input.path, input.page);
+    if (!opened) {
+      continue;
+    }
+    const ImageInfo& info = opened.value()->info();
+    stack.samples = first ? info.samples : stack.samples;
+    first = false;
+    random_access = random_access && info.random_access;
+    most = std::max(most, info.decoder_bytes);
+  }
+  stack.random_access = random_access;
+  stack.decoder_bytes = most;
+}
+
 std::int64_t LayerReader::lines_per_pass(const LayerStack& stack, std::int64_t panel_bytes) {
   if (stack.lines_along == LinesAlong::rows) {
     return stack.random_access ? 1 : stack.lines;
@@ -79,8 +115,50 @@ std::int64_t LayerReader::lines_per_pass(const LayerStack& stack, std::int64_t p
   return std::min(stack.lines, std::max<std::int64_t>(8, lines));
 }
 
+std::int64_t LayerReader::fixed_bytes(const LayerStack& stack, std::int64_t lines) {
+  const std::int64_t decoder = stack.decoder_bytes.value_or(0);
+  if (stack.lines_along == LinesAlong::columns) {
+    return decoder + band_bytes(stack);
+  }
+  return decoder + (stack.samples == SampleType::bit ? 0 : std::min(lines, stack.lines) * held_line_bytes(stack));
+}
+
+std::int64_t LayerReader::least_panel_bytes(const LayerStack& stack) {
+  return stack.lines_along == LinesAlong::columns ? 16 * held_line_bytes(stack) : 0;
+}
+
 LayerReader::LayerReader(const LayerStack& stack, const ImageOpener& opener, std::int64_t panel_bytes)
     : stack_(stack), opener_(opener), panel_lines_(lines_per_pass(stack, panel_bytes)) {}
+
+std::int64_t LayerReader::least_memory_bytes(std::int64_t lines) {
+  std::int64_t decoder = 0;
+  if (!stack_.decoder_bytes) {
+    LayerStack known = stack_;
+    learn_images(known, opener_);
+    decoder = known.decoder_bytes.value_or(0);
+  }
+  return decoder + fixed_bytes(stack_, lines) + least_panel_bytes(stack_);
+}
+
+void LayerReader::grant_memory(std::int64_t lines, std::int64_t bytes) {
+  const std::int64_t panel = bytes - (least_memory_bytes(lines) - least_panel_bytes(stack_));
+  panel_lines_ = lines_per_pass(stack_, panel);
+}
+
+Result<void> LayerReader::check_image(const LayerInput& input, const ImageInfo& info) const {
+  const bool rows = stack_.lines_along == LinesAlong::rows;
+  const std::int64_t width = rows ? stack_.pixels : stack_.lines;
+  const std::int64_t height = rows ? stack_.lines : stack_.pixels;
+  if (info.width == width && info.height == height && info.samples == stack_.samples) {
+    return {};
+  }
+  const auto bits = [](SampleType samples) { return samples == SampleType::bit ? 1 : 8 * row_bytes(samples, 1); };
+  return Error{ErrorCode::bad_file,
+               input.path + ": page " + std::to_string(input.page) + ": is " + std::to_string(info.width) + " x " +
+                   std::to_string(info.height) + " pixels of " + std::to_string(bits(info.samples)) +
+                   " bit, the job has " + std::to_string(width) + " x " + std::to_string(height) + " of " +
+                   std::to_string(bits(stack_.samples)) + ": it is another image, or changed since the job was read"};
+}
 
 Result<void> LayerReader::select(const LayerInput& input) {
   if (source_ && input.path == path_ && input.page == page_) {
@@ -89,14 +167,7 @@ Result<void> LayerReader::select(const LayerInput& input) {
   source_.reset();
   held_count_ = 0;
   GRAVURE_TRY(std::unique_ptr<ImageSource> opened, opener_.open(input.path, input.page));
-  const ImageInfo& info = opened->info();
-  const bool rows = stack_.lines_along == LinesAlong::rows;
-  const std::int64_t lines = rows ? info.height : info.width;
-  const std::int64_t pixels = rows ? info.width : info.height;
-  if (lines != stack_.lines || pixels != stack_.pixels || info.samples != stack_.samples) {
-    return Error{ErrorCode::bad_file, input.path + ": page " + std::to_string(input.page) +
-                                          " changed since the job was read: start again with the files at rest"};
-  }
+  GRAVURE_CHECK(check_image(input, opened->info()));
   source_ = std::move(opened);
   path_ = input.path;
   page_ = input.page;
@@ -106,11 +177,16 @@ Result<void> LayerReader::select(const LayerInput& input) {
 
 Result<void> LayerReader::read_rows(std::int64_t first_row, std::int64_t count, std::span<std::byte> out) {
   if (!source_->info().random_access && first_row < next_row_) {  // such a file only runs upwards: start it again
+    source_.reset();                                              // one at a time is what its memory is counted for
     GRAVURE_TRY(source_, opener_.open(path_, page_));
   }
   next_row_ = first_row + count;
-  return source_->read_rows(first_row, count,
-                            out.first(size(count * row_bytes(stack_.samples, source_->info().width))));
+  Result<void> read =
+      source_->read_rows(first_row, count, out.first(size(count * row_bytes(stack_.samples, source_->info().width))));
+  if (!read) {
+    source_.reset();  // whoever asks on is served by a fresh one, which says the same of the same rows
+  }
+  return read;
 }
 
 Result<void> LayerReader::load_panel(std::int64_t first_line) {
@@ -118,7 +194,7 @@ Result<void> LayerReader::load_panel(std::int64_t first_line) {
   const std::int64_t count = std::min(panel_lines_, stack_.lines - first);
   const std::int64_t rows = stack_.pixels;
   const std::int64_t image_row = row_bytes(stack_.samples, stack_.lines);
-  const std::int64_t band_rows = std::clamp<std::int64_t>(kBandBytes / std::max<std::int64_t>(1, image_row), 1, rows);
+  const std::int64_t band_rows = band_rows_of(stack_);
   const std::int64_t sample = bytes_per_sample(stack_.samples);
   const bool bits = stack_.samples == SampleType::bit;
   const std::int64_t slab = row_bytes(stack_.samples, count);

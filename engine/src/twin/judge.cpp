@@ -73,7 +73,40 @@ void judge_windows(const LinePlan& line, VerifyReport& report) {
   }
 }
 
-void say_violations(const Plan& plan, const AxisCheck& axis, const Tally& tally, VerifyReport& report) {
+std::string layers_text(std::int64_t first, std::int64_t last) {
+  return first == last ? "layer " + std::to_string(first)
+                       : "layers " + std::to_string(first) + " to " + std::to_string(last);
+}
+
+/// One violation for each run of layers whose images say the same, for example the slices of one depth map.
+void say_unread(const Tally& tally, VerifyReport& report) {
+  constexpr int kSaid = 20;
+  int said = 0;
+  std::int64_t more = 0;
+  for (auto from = tally.unread.begin(); from != tally.unread.end();) {
+    auto to = from;
+    std::int64_t lines = 0;
+    std::int64_t last = from->first;
+    for (; to != tally.unread.end() && to->second.why == from->second.why && to->first <= last + 1; ++to) {
+      lines += to->second.lines;
+      last = to->first;
+    }
+    report.uncompared_lines += lines;
+    if (++said <= kSaid) {
+      report.violations.push_back("the image of " + layers_text(from->first, last) + " cannot be read, so " +
+                                  std::to_string(lines) + " lines were not compared: " + from->second.why);
+    } else {
+      ++more;
+    }
+    from = to;
+  }
+  if (more > 0) {
+    report.violations.push_back("and " + std::to_string(more) + " more images cannot be read");
+  }
+}
+
+void say_violations(const Plan& plan, const AxisCheck& axis, const Tally& tally, bool images_given,
+                    VerifyReport& report) {
   const auto say = [&](const std::string& what) { report.violations.push_back(what); };
   if (tally.refused.count > 0) {
     say("the device refused " + place(plan, tally.refused.ordinal) + ": " + tally.refused.detail);
@@ -90,9 +123,11 @@ void say_violations(const Plan& plan, const AxisCheck& axis, const Tally& tally,
     say("the axis stands wrong at " + std::to_string(tally.off_axis.count) + " line start(s) or ends, the first at " +
         place(plan, tally.off_axis.ordinal) + ": " + tally.off_axis.detail);
   }
-  if (!report.images_compared) {
+  if (!images_given) {
     say("the images were not found, so nothing proves that the program shows them: give --images DIR");
-  } else if (report.wrong_pixels > 0) {
+  }
+  say_unread(tally, report);
+  if (report.wrong_pixels > 0) {
     say(std::to_string(report.wrong_pixels) + " landed pixels differ from the images, the first at " +
         place(plan, tally.first_wrong_ordinal) + ", column " + std::to_string(tally.first_wrong_column));
   }
@@ -108,13 +143,13 @@ void say_violations(const Plan& plan, const AxisCheck& axis, const Tally& tally,
 
 }  // namespace
 
-VerifyReport judge(const Plan& plan, const AxisCheck& axis, const Tally& tally, bool images_compared) {
+VerifyReport judge(const Plan& plan, const AxisCheck& axis, const Tally& tally, bool images_given) {
   VerifyReport report;
   report.revolutions = plan.job.revolutions;
   report.lines = tally.lines;
   report.fired_pixels = tally.fired;
   report.pixels = plan.job.revolutions * plan.rotary.lines_per_revolution * plan.line.pixels;
-  report.images_compared = images_compared;
+  report.images_compared = images_given && tally.unread.empty();
   report.wrong_pixels = tally.wrong_pixels;
   if (tally.first_wrong_ordinal >= 0) {
     report.first_wrong_pixel =
@@ -129,7 +164,7 @@ VerifyReport judge(const Plan& plan, const AxisCheck& axis, const Tally& tally, 
     report.axis_worst_line = tally.worst_ordinal % plan.rotary.lines_per_revolution;
   }
   fill_seam(plan, axis, report);
-  say_violations(plan, axis, tally, report);
+  say_violations(plan, axis, tally, images_given, report);
   return report;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -43,6 +44,21 @@ struct Finding {
 };
 
 /// What one worker has seen; merged into one.
+/// A layer whose image could not be read, at least in part.
+struct UnreadLayer {
+  std::int64_t lines = 0;   ///< of all revolutions, not compared
+  std::int64_t chunk = -1;  ///< the first one
+  std::string why;          ///< as the reader said it there
+
+  void add(std::int64_t at, std::int64_t how_many, const std::string& what) {
+    if (chunk < 0 || at < chunk) {
+      chunk = at;
+      why = what;
+    }
+    lines += how_many;
+  }
+};
+
 struct Tally {
   std::int64_t lines = 0;
   std::int64_t fired = 0;
@@ -56,6 +72,7 @@ struct Tally {
   Finding refused;
   Finding misplaced;
   Finding off_axis;
+  std::map<std::int64_t, UnreadLayer> unread;  ///< by layer
 
   void see_axis(double edges, std::int64_t ordinal) {
     if (worst_ordinal < 0 || std::fabs(edges) > std::fabs(worst_edges) ||
@@ -85,6 +102,9 @@ struct Tally {
     refused.merge(other.refused);
     misplaced.merge(other.misplaced);
     off_axis.merge(other.off_axis);
+    for (const auto& [layer, found] : other.unread) {
+      unread[layer].add(found.chunk, found.lines, found.why);
+    }
   }
 };
 

@@ -79,6 +79,21 @@ Result<void> unroll_band(LineSource& program, const DeviceFactory& devices, std:
   return sink(turned, rows);
 }
 
+/// Bytes of every line that a band may hold: it is held twice, before and after it is turned, beside a chunk as stored,
+/// unpacked, turned, fired and landed.
+Result<std::int64_t> fitting_band(const LineSource& program, const UnrollOptions& options) {
+  constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+  const ProgramHeader& header = program.header();
+  const std::int64_t fixed = 6 * kMiB + 6 * program.lines_per_chunk() * header.line_bytes();
+  const std::int64_t a_byte = 2 * (header.plan.rotary.lines_per_revolution + 7);
+  if (options.memory_bytes < fixed + a_byte) {
+    return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options.memory_bytes / kMiB) +
+                                              " MiB: turning this picture needs at least " +
+                                              std::to_string((fixed + a_byte + kMiB - 1) / kMiB) + " MiB"};
+  }
+  return std::clamp<std::int64_t>((options.memory_bytes - fixed) / a_byte, 1, header.line_bytes());
+}
+
 }  // namespace
 
 UnrolledSize unrolled_size(const ProgramHeader& header) {
@@ -100,11 +115,8 @@ Result<void> unroll(LineSource& program, const DeviceFactory& devices, std::int6
         program, devices, revolution, options.cancel,
         [&](std::span<const std::byte> landed, std::int64_t, std::int64_t count) { return rows(landed, count); });
   }
-  // A band is held twice, before and after it is turned.
+  GRAVURE_TRY(const std::int64_t band_bytes, fitting_band(program, options));
   const std::int64_t pixels = header.plan.line.pixels;
-  const std::int64_t fit =
-      options.memory_bytes / 2 / std::max<std::int64_t>(1, header.plan.rotary.lines_per_revolution);
-  const std::int64_t band_bytes = std::clamp<std::int64_t>(fit, 1, header.line_bytes());
   for (std::int64_t byte = 0; byte < header.line_bytes(); byte += band_bytes) {
     const std::int64_t band_rows = std::min(pixels - byte * 8, band_bytes * 8);
     GRAVURE_CHECK(unroll_band(program, devices, revolution, byte, band_rows, rows, options.cancel));

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cstring>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 
 #include "axis_check.hpp"
@@ -13,6 +15,8 @@
 
 namespace gravure {
 namespace {
+
+constexpr std::int64_t kReportBytes = 256;  // of each revolution: its row of the seam table
 
 std::size_t size(std::int64_t bytes) {
   return static_cast<std::size_t>(bytes);
@@ -49,16 +53,13 @@ class Verifier {
 
   Result<Tally> run(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,
                     const LayerLinesFactory& images) {
-    const int wanted = options_.threads > 0 ? options_.threads : static_cast<int>(std::thread::hardware_concurrency());
-    // A worker holds a chunk as stored, packed, turned, fired, landed and as the image has it, and the image's samples.
-    const std::int64_t each = lines_per_chunk_ * header_.line_bytes() * 6 + (std::int64_t{40} << 20);
-    const std::int64_t fit = std::max<std::int64_t>(1, options_.memory_bytes / each);
-    const std::int64_t tasks = static_cast<std::int64_t>(groups_.size()) * chunks_;
-    const std::int64_t count =
-        std::clamp<std::int64_t>(std::min<std::int64_t>(wanted, fit), 1, std::max<std::int64_t>(1, tasks));
+    GRAVURE_TRY(const std::int64_t count, divide_budget(images));
     std::vector<std::thread> workers;
-    for (std::int64_t i = 1; i < count; ++i) {
-      workers.emplace_back([&] { work(programs, images); });
+    try {
+      for (std::int64_t i = 1; i < count; ++i) {
+        workers.emplace_back([&] { work(programs, images); });
+      }
+    } catch (const std::system_error&) {  // no more threads to be had: those there are do it
     }
     work(programs, images);
     for (std::thread& worker : workers) {
@@ -74,7 +75,48 @@ class Verifier {
   class Worker;
   friend class Worker;
 
-  void work(const std::function<Result<std::unique_ptr<LineSource>>()>& programs, const LayerLinesFactory& images);
+  /// What a worker holds beside what reads the images: a chunk as stored, unpacked, turned, fired, landed and as the
+  /// image has it, once more while its last one is unpacked; the program's header and tables; its library and codec.
+  std::int64_t worker_bytes() const {
+    constexpr std::int64_t kLibrary = std::int64_t{6} << 20;
+    const auto layers = static_cast<std::int64_t>(header_.layers.size());
+    return kLibrary + 7 * lines_per_chunk_ * header_.line_bytes() + 40 * layers * chunks_ + 128 * layers +
+           4 * plan_.job.revolutions;
+  }
+
+  /// How many workers the budget holds; their share for images is in image_bytes_.
+  Result<std::int64_t> divide_budget(const LayerLinesFactory& images) {
+    std::int64_t image_bytes = 0;
+    if (images) {
+      GRAVURE_TRY(const std::unique_ptr<LayerLines> reader, images());
+      image_bytes = reader->least_memory_bytes(lines_per_chunk_);
+    }
+    const std::int64_t all = options_.memory_bytes - kReportBytes * plan_.job.revolutions;
+    const std::int64_t each = worker_bytes() + image_bytes;
+    if (all < each) {
+      constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+      return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options_.memory_bytes / kMiB) +
+                                                " MiB: verifying this program needs at least " +
+                                                std::to_string((options_.memory_bytes - all + each + kMiB - 1) / kMiB) +
+                                                " MiB, " + std::to_string((image_bytes + kMiB - 1) / kMiB) +
+                                                " of them to read its images: raise --memory"};
+    }
+    const int wanted = options_.threads > 0 ? options_.threads : static_cast<int>(std::thread::hardware_concurrency());
+    const std::int64_t tasks = std::max<std::int64_t>(1, static_cast<std::int64_t>(groups_.size()) * chunks_);
+    const std::int64_t count = std::clamp<std::int64_t>(std::min<std::int64_t>(wanted, all / each), 1, tasks);
+    image_bytes_ = all / count - worker_bytes();
+    return count;
+  }
+
+  void work(const std::function<Result<std::unique_ptr<LineSource>>()>& programs, const LayerLinesFactory& images) {
+    try {
+      work_on_tickets(programs, images);
+    } catch (const std::bad_alloc&) {
+      fail({ErrorCode::io, "out of memory: lower --memory or --threads"});
+    }
+  }
+  void work_on_tickets(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,
+                       const LayerLinesFactory& images);
 
   void fail(const Error& error) {
     const std::lock_guard lock(mutex_);
@@ -101,6 +143,7 @@ class Verifier {
   std::vector<std::vector<std::int64_t>> revolutions_of_;
   std::vector<Group> groups_;
   std::int64_t chunks_ = 0;
+  std::int64_t image_bytes_ = 0;  ///< for what reads the images, each worker
   std::atomic<std::int64_t> next_{0};
   std::atomic<bool> stop_{false};
   std::mutex mutex_;
@@ -146,7 +189,7 @@ class Verifier::Worker final : public PinObserver {
         continue;
       }
       GRAVURE_CHECK(chunk_.load(*program_, {layer, chunk}));
-      GRAVURE_CHECK(load_image(layer));
+      load_image(layer, chunk);
       for (const std::int64_t revolution : parent_.revolutions_of_[size(layer)]) {
         if (parent_.options_.cancel != nullptr && parent_.options_.cancel->cancelled()) {
           return Error{ErrorCode::cancelled, "stopped before everything was verified"};
@@ -161,13 +204,21 @@ class Verifier::Worker final : public PinObserver {
   const Tally& tally() const { return tally_; }
 
  private:
-  Result<void> load_image(std::int64_t layer) {
+  /// An image that cannot be read is reported; everything else is verified all the same.
+  void load_image(std::int64_t layer, std::int64_t chunk) {
+    comparable_ = false;
     if (!images_) {
-      return {};
+      return;
     }
     image_.resize(size(chunk_.lines() * header_.line_bytes()));
-    GRAVURE_TRY(invert_, images_->read_lines(layer, chunk_.first_line(), chunk_.lines(), image_));
-    return {};
+    const Result<bool> invert = images_->read_lines(layer, chunk_.first_line(), chunk_.lines(), image_);
+    if (!invert) {
+      const auto revolutions = static_cast<std::int64_t>(parent_.revolutions_of_[size(layer)].size());
+      tally_.unread[layer].add(chunk, revolutions * chunk_.lines(), invert.error().message);
+      return;
+    }
+    invert_ = invert.value();
+    comparable_ = true;
   }
 
   void run_chunk(std::int64_t revolution) {
@@ -182,7 +233,7 @@ class Verifier::Worker final : public PinObserver {
       tally_.refused.add(first_ordinal_ + landing_.lines(), sent.error().message);
       device_ = parent_.devices_(*this);  // the fault is sticky: go on with a fresh one to see what else is wrong
     }
-    if (images_) {
+    if (comparable_) {
       compare(revolution);
     }
   }
@@ -234,13 +285,14 @@ class Verifier::Worker final : public PinObserver {
   Landing landing_;
   Tally tally_;
   std::vector<std::byte> image_;
+  bool comparable_ = false;  // image_ holds the lines of the chunk
   bool invert_ = false;
   std::int64_t first_ordinal_ = 0;
   std::unique_ptr<DeviceLink> device_;
 };
 
-void Verifier::work(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,
-                    const LayerLinesFactory& images) {
+void Verifier::work_on_tickets(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,
+                               const LayerLinesFactory& images) {
   Result<std::unique_ptr<LineSource>> program = programs();
   if (!program) {
     return fail(program.error());
@@ -252,6 +304,7 @@ void Verifier::work(const std::function<Result<std::unique_ptr<LineSource>>()>& 
       return fail(made.error());
     }
     reader = std::move(made).value();
+    reader->grant_memory(lines_per_chunk_, image_bytes_);
   }
   Worker worker(*this, std::move(program).value(), std::move(reader));
   const std::int64_t tasks = static_cast<std::int64_t>(groups_.size()) * chunks_;

@@ -45,6 +45,14 @@ std::vector<std::byte> picture(SmallJob& small, std::int64_t layer) {
   return bytes;
 }
 
+/// What unrolling takes beside the band that is turned, and for one byte of every line.
+std::int64_t fixed_bytes(const SmallJob& small) {
+  return (6 << 20) + 6 * small.program.lines_per_chunk * small.program.header.line_bytes();
+}
+std::int64_t band_bytes(std::int64_t lines) {
+  return 2 * (lines + 7);
+}
+
 TEST(Unroll, GivesThePictureOfEveryRevolutionInAnyMemory) {
   for (const LinesAlong along : {LinesAlong::rows, LinesAlong::columns}) {
     for (const std::int64_t lines : {12, 13}) {
@@ -55,7 +63,8 @@ TEST(Unroll, GivesThePictureOfEveryRevolutionInAnyMemory) {
         small.images.at("layer1").info.zero_is_white = true;
         compile_job(small, 7, LayerOrder::cycle);
         for (std::int64_t revolution = 0; revolution < 7; ++revolution) {
-          for (const std::int64_t memory : {std::int64_t{0}, std::int64_t{60}, std::int64_t{1} << 28}) {
+          const std::int64_t least = fixed_bytes(small) + band_bytes(lines);
+          for (const std::int64_t memory : {least, least + 60, std::int64_t{1} << 28}) {
             SCOPED_TRACE(testing::Message()
                          << lines << " lines, revolution " << revolution << ", " << memory << " bytes");
             const Unrolled unrolled = unroll_to_memory(small, revolution, {.memory_bytes = memory});
@@ -72,8 +81,13 @@ TEST(Unroll, TurnsColumnsInBandsThatFitTheMemory) {
   SmallJob small;
   prepare(small, LinesAlong::columns, 13, 45, 1);
   compile_job(small, 1, LayerOrder::sequence);
-  EXPECT_EQ(unroll_to_memory(small, 0, {.memory_bytes = 0}).calls, 6) << "a byte of every line at a time";
-  EXPECT_EQ(unroll_to_memory(small, 0, {.memory_bytes = 2 * 2 * 13}).calls, 3);
+  const std::int64_t fixed = fixed_bytes(small);
+  EXPECT_EQ(unroll_to_memory(small, 0, {.memory_bytes = fixed + band_bytes(13)}).calls, 6) << "a byte of every line";
+  EXPECT_EQ(unroll_to_memory(small, 0, {.memory_bytes = fixed + 2 * band_bytes(13)}).calls, 3);
+  const Unrolled refused = unroll_to_memory(small, 0, {.memory_bytes = fixed + band_bytes(13) - 1});
+  ASSERT_FALSE(refused.result);
+  EXPECT_EQ(refused.result.error().code, ErrorCode::out_of_range);
+  EXPECT_NE(refused.result.error().message.find("needs at least 7 MiB"), std::string::npos);
   EXPECT_EQ(unroll_to_memory(small, 0).calls, 1);
 }
 

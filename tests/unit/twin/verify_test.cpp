@@ -93,7 +93,7 @@ TEST(Verify, ReportsTheSameForAnyNumberOfThreads) {
   ASSERT_TRUE(one);
   EXPECT_GT(one.value().wrong_pixels, 0);
   for (const int threads : {2, 5}) {
-    for (const std::int64_t memory : {std::int64_t{1}, std::int64_t{100} << 20, std::int64_t{1} << 30}) {
+    for (const std::int64_t memory : {std::int64_t{8} << 20, std::int64_t{20} << 20, std::int64_t{1} << 30}) {
       const Result<VerifyReport> other =
           verify_job(small, small.lines(), {.memory_bytes = memory, .threads = threads}, emulated(), damage);
       ASSERT_TRUE(other);
@@ -177,15 +177,10 @@ TEST(Verify, StopsOnRequest) {
   }
 }
 
-TEST(Verify, HandsOnWhatReadersSay) {
+TEST(Verify, HandsOnWhatTheProgramSays) {
   for (const int threads : {1, 2, 5}) {
     SmallJob small;
     sound_job(small);
-    small.images.at("layer3").damaged_row = 7;
-    const Result<VerifyReport> damaged = verify_job(small, small.lines(), {.threads = threads});
-    ASSERT_FALSE(damaged);
-    EXPECT_EQ(damaged.error().message, "layer3: row 7 is damaged");
-    small.images.at("layer3").damaged_row.reset();
     small.program.chunks.erase({5, 2});
     const Result<VerifyReport> missing = verify_job(small, small.lines(), {.threads = threads});
     ASSERT_FALSE(missing);
@@ -194,36 +189,92 @@ TEST(Verify, HandsOnWhatReadersSay) {
   }
 }
 
-TEST(Verify, RefusesAHeaderWithLayersItDoesNotHave) {
-  SmallJob small;
-  sound_job(small);
-  small.program.header.layer_of_revolution[3] = 8;
-  ASSERT_FALSE(verify_job(small, small.lines()));
-  EXPECT_EQ(verify_job(small, small.lines()).error().code, ErrorCode::bad_file);
-  small.program.header.layer_of_revolution.pop_back();
-  EXPECT_FALSE(verify_job(small, small.lines()));
+TEST(Verify, GoesOnWithoutAnImageThatIsDamaged) {
+  for (const int threads : {1, 2, 5}) {
+    SmallJob small;
+    sound_job(small);
+    small.images.at("layer3").damaged_row = 7;
+    const auto damage = [](ChunkAddress address, std::span<std::byte> lines) {
+      if (address.layer == 6) {
+        lines[0] ^= std::byte{0x10};  // of every chunk
+      }
+    };
+    const Result<VerifyReport> sound = verify_job(small, small.lines(), {.threads = threads});
+    ASSERT_TRUE(sound) << sound.error().message;
+    ASSERT_EQ(sound.value().violations.size(), 1U) << all(sound.value().violations);
+    const std::int64_t lines = sound.value().uncompared_lines;
+    EXPECT_GT(lines, 0);
+    EXPECT_LE(lines, small.program.lines_per_chunk) << "the rest of the image is compared";
+    EXPECT_EQ(sound.value().violations[0], "the image of layer 3 cannot be read, so " + std::to_string(lines) +
+                                               " lines were not compared: layer3: row 7 is damaged");
+    EXPECT_FALSE(sound.value().images_compared);
+    EXPECT_EQ(sound.value().lines, 8 * 13) << "every line is run all the same";
+    const Result<VerifyReport> wrong = verify_job(small, small.lines(), {.threads = threads}, emulated(), damage);
+    ASSERT_TRUE(wrong) << wrong.error().message;
+    expect_violation(wrong.value(), "landed pixels differ from the images, the first at revolution 6, line 0");
+    expect_violation(wrong.value(), "the image of layer 3 cannot be read");
+  }
 }
 
-class LinesDone final : public Progress {
- public:
-  void update(std::int64_t done, std::int64_t total) override {
-    falls = falls || done <= last;
-    last = done;
-    whole = total;
-  }
-  bool falls = false;
-  std::int64_t last = 0;
-  std::int64_t whole = 0;
-};
-
-TEST(Verify, TellsItsProgressInLinesUpToAll) {
+TEST(Verify, GoesOnWithoutImagesThatAreNotThere) {
   SmallJob small;
   sound_job(small);
-  LinesDone progress;
-  expect_sound(verify_job(small, small.lines(), {.threads = 5, .progress = &progress}));
-  EXPECT_FALSE(progress.falls);
-  EXPECT_EQ(progress.last, 8 * 13);
-  EXPECT_EQ(progress.whole, 8 * 13);
+  for (const std::size_t layer : {std::size_t{2}, std::size_t{5}}) {
+    small.stack.layers[layer].path = "gone" + std::to_string(layer);
+  }
+  const Result<VerifyReport> report = verify_job(small, small.lines(), {.threads = 2});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report.value().uncompared_lines, 2 * 13);
+  ASSERT_EQ(report.value().violations.size(), 2U) << all(report.value().violations);
+  expect_violation(report.value(), "the image of layer 2 cannot be read, so 13 lines were not compared: gone2: page 0");
+  expect_violation(report.value(), "the image of layer 5 cannot be read, so 13 lines were not compared: gone5: page 0");
+}
+
+TEST(Verify, SaysOnceThatADepthMapIsNotThere) {
+  SmallJob small;
+  small.job = small_job(11);
+  small.stack = depth_stack(small.images, SampleType::u16, LinesAlong::rows, 11, 30, 6, 5);
+  compile_job(small, 12, LayerOrder::cycle);
+  for (LayerInput& layer : small.stack.layers) {
+    layer.path = "gone";
+  }
+  const Result<VerifyReport> report = verify_job(small, small.lines());
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report.value().uncompared_lines, 12 * 11);
+  ASSERT_EQ(report.value().violations.size(), 1U) << all(report.value().violations);
+  expect_violation(report.value(), "the image of layers 0 to 5 cannot be read, so 132 lines were not compared: gone");
+}
+
+TEST(Verify, RefusesABudgetThatHoldsNoWorkerAndNamesTheNeed) {
+  SmallJob small;
+  sound_job(small);
+  small.images.at("layer4").info.decoder_bytes = std::int64_t{50} << 20;
+  const Result<VerifyReport> refused = verify_job(small, small.lines(), {.memory_bytes = std::int64_t{55} << 20});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+  EXPECT_NE(refused.error().message.find("at least 57 MiB, 50 of them to read its images"), std::string::npos)
+      << refused.error().message;
+  expect_sound(verify_job(small, small.lines(), {.memory_bytes = std::int64_t{57} << 20, .threads = 3}));
+}
+
+TEST(Verify, RunsOutOfMemoryWithAnError) {
+  class Greedy final : public LayerLines {
+   public:
+    Result<bool> read_lines(std::int64_t, std::int64_t, std::int64_t, std::span<std::byte>) override {
+      throw std::bad_alloc();
+    }
+  };
+  for (const int threads : {1, 4}) {
+    SmallJob small;
+    sound_job(small);
+    const LayerLinesFactory greedy = []() -> Result<std::unique_ptr<LayerLines>> {
+      return std::unique_ptr<LayerLines>(std::make_unique<Greedy>());
+    };
+    const Result<VerifyReport> report = verify_job(small, greedy, {.threads = threads});
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, ErrorCode::io);
+    EXPECT_EQ(report.error().message.rfind("out of memory", 0), 0U);
+  }
 }
 
 }  // namespace

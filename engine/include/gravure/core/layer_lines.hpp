@@ -19,6 +19,10 @@ class LayerLines {
   /// are undefined. Returns true where a one means "stays dark": such bits are to be inverted to become pulses.
   virtual Result<bool> read_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
                                   std::span<std::byte> out) = 0;
+  /// The least memory it works with when up to `lines` lines are asked for at once, beside the lines it gives.
+  virtual std::int64_t least_memory_bytes(std::int64_t /*lines*/) { return 0; }
+  /// Grants memory, no less than that, before the first line is read.
+  virtual void grant_memory(std::int64_t /*lines*/, std::int64_t /*bytes*/) {}
 };
 
 using LayerLinesFactory = std::function<Result<std::unique_ptr<LayerLines>>()>;

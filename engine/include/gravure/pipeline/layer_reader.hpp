@@ -26,6 +26,8 @@ struct LayerStack {
   std::int64_t pixels = 0;  ///< of every line
   SampleType samples = SampleType::bit;
   bool random_access = true;  ///< false: one of the files must be read from its first row on
+  /// The most that a reader of one of the images holds (ImageInfo). Left out: found by opening each of them.
+  std::optional<std::int64_t> decoder_bytes;
   LinesAlong lines_along = LinesAlong::rows;
   Fires fires = Fires::white;
   std::optional<std::int64_t> threshold;  ///< grey layers: a sample >= threshold is white
@@ -33,6 +35,10 @@ struct LayerStack {
   std::optional<Rational> depth_min;      ///< depth map: sample with no pulse; default 0
   std::optional<Rational> depth_max;      ///< depth map: sample with every pulse; default 1, 255 or 65535
 };
+
+/// Fills in what the images say of themselves: samples, random_access and decoder_bytes of all distinct ones that open.
+/// Those that do not are passed over: read_lines() says why.
+void learn_images(LayerStack& stack, const ImageOpener& opener);
 
 /// Reads the lines of a stack in bounded memory: rows straight from the file, columns by way of panels (as many columns
 /// as the budget holds, transposed in blocks; a picture with more is decoded once a panel).
@@ -42,7 +48,13 @@ class LayerReader final : public LayerLines {
   LayerReader(const LayerStack& stack, const ImageOpener& opener, std::int64_t panel_bytes);
   Result<bool> read_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
                           std::span<std::byte> out) override;
+  std::int64_t least_memory_bytes(std::int64_t lines) override;
+  void grant_memory(std::int64_t lines, std::int64_t bytes) override;
 
+  /// What a reader holds beside its panels when up to `lines` lines are asked for at once, as far as the stack tells.
+  static std::int64_t fixed_bytes(const LayerStack& stack, std::int64_t lines);
+  /// The smallest panel; 0 for rows.
+  static std::int64_t least_panel_bytes(const LayerStack& stack);
   /// Lines that one pass over a file yields; reading such groups in order is cheapest.
   static std::int64_t lines_per_pass(const LayerStack& stack, std::int64_t panel_bytes);
 
@@ -52,6 +64,7 @@ class LayerReader final : public LayerLines {
     raster::Where where;
   };
   Result<void> select(const LayerInput& input);
+  Result<void> check_image(const LayerInput& input, const ImageInfo& info) const;
   Result<void> read_rows(std::int64_t first_row, std::int64_t count, std::span<std::byte> out);
   Result<void> read_bits(std::int64_t first_line, std::int64_t count, std::span<std::byte> out);
   /// As many of the lines as are held in one piece; at least one.

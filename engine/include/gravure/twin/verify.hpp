@@ -29,8 +29,9 @@ struct VerifyReport {
   std::int64_t lines = 0;         ///< executed by the device
   std::int64_t fired_pixels = 0;  ///< what the gate let through
   std::int64_t pixels = 0;
-  bool images_compared = false;
-  std::int64_t wrong_pixels = 0;  ///< landed != image
+  bool images_compared = false;       ///< every line of every revolution
+  std::int64_t uncompared_lines = 0;  ///< of all revolutions: their images could not be read
+  std::int64_t wrong_pixels = 0;      ///< landed != image
   std::optional<PixelPlace> first_wrong_pixel;
 
   std::vector<SeamRow> seam;  ///< one for each revolution
@@ -64,8 +65,9 @@ struct VerifyOptions {
 /// Runs every line of every revolution through devices made by `devices`, puts what the gate let through back to pixels
 /// and compares it with `images` (none: said as a violation), and the axis at each line start with the plan's turning.
 /// The wanted turning comes from the plan's geometry (lines, slots, encoder, gear), not from its A-B solution.
-/// Violations are reported, not errors; errors are unreadable files and cancellation.
-/// `programs` opens the program once for each worker.
+/// Violations are reported, not errors; errors are an unreadable program, a memory budget too small for one worker (out
+/// of range, naming what is needed) and cancellation. An image that cannot be read is a violation, too, and all others
+/// are still compared. `programs` opens the program once for each worker; fewer run where memory does not suffice.
 Result<VerifyReport> verify(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,
                             const DeviceFactory& devices, const LayerLinesFactory& images,
                             const VerifyOptions& options);
