@@ -1,9 +1,10 @@
-// Compiling and verifying one 96-megapixel layer against a bare libtiff decode of the same file, in one run, one
-// thread, CPU time. docs/benchmarks.md has the method. Arguments are Google Benchmark's; the defaults interleave 7
-// repetitions.
+// Compiling and verifying 96-megapixel layers (rows, columns, and 100 slices of a 16-bit map) against a bare libtiff
+// decode of the same file, in one run, one thread, CPU time. docs/benchmarks.md has the method. Arguments are Google
+// Benchmark's; the defaults interleave 7 repetitions.
 #include <benchmark/benchmark.h>
 #include <tiffio.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -57,9 +58,33 @@ std::vector<std::byte> noise() {
   return bits;
 }
 
+/// The same walls as depths of 16 bits, with floors that lean: what a roller is sliced from.
+std::vector<std::uint16_t> depths(std::int64_t y) {
+  std::vector<std::uint16_t> row(static_cast<std::size_t>(kWidth));
+  for (std::int64_t x = 0; x < kWidth; ++x) {
+    constexpr double kPitch = 61.37;
+    const double a = static_cast<double>(x) / kPitch * 2 * M_PI;
+    const double b = static_cast<double>(y) / kPitch * 2 * M_PI / std::sqrt(3.0);
+    const double wall = std::cos(a) * std::cos(b) + 0.5 * std::cos(2 * b);
+    const double lean = 0.2 * static_cast<double>(x % 61) / 61;
+    row[static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(65535 * std::clamp(0.3 - wall + lean, 0.0, 1.0));
+  }
+  return row;
+}
+
+constexpr std::int64_t kMapLevels = 100;
+
+/// What is compiled: a bilevel layer along rows or columns, or a map in kMapLevels slices.
 struct Picture {
   std::string name;
   std::string path;
+  LinesAlong along = LinesAlong::rows;
+  bool is_map = false;
+
+  std::int64_t lines() const { return along == LinesAlong::rows ? kHeight : kWidth; }
+  std::int64_t pixels() const { return along == LinesAlong::rows ? kWidth : kHeight; }
+  std::int64_t layers() const { return is_map ? kMapLevels : 1; }
+  std::int64_t line_bytes() const { return (pixels() + 7) / 8; }
 };
 
 /// Stops at the first thing that goes wrong: a benchmark of a failure would mislead.
@@ -76,6 +101,24 @@ void must(const Result<void>& result) {
     std::fprintf(stderr, "%s\n", result.error().message.c_str());
     std::exit(1);
   }
+}
+
+void write_map(const std::string& path) {
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(kWidth));
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(kHeight));
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 64);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+  for (std::int64_t y = 0; y < kHeight; ++y) {
+    std::vector<std::uint16_t> row = depths(y);
+    if (TIFFWriteScanline(tiff, row.data(), static_cast<std::uint32_t>(y)) != 1) {
+      std::fprintf(stderr, "%s: cannot write\n", path.c_str());
+      std::exit(1);
+    }
+  }
+  TIFFClose(tiff);
 }
 
 std::vector<Picture> write_pictures(const fs::path& folder) {
@@ -99,31 +142,39 @@ std::vector<Picture> write_pictures(const fs::path& folder) {
       pictures.push_back({kind + "/" + codec, path});
     }
   }
+  pictures.push_back({"columns/none", (folder / "honeycomb_none.tif").string(), LinesAlong::columns});
+  pictures.push_back({"columns/G4", (folder / "honeycomb_G4.tif").string(), LinesAlong::columns});
+  pictures.push_back({"map of 100/Deflate", (folder / "map.tif").string(), LinesAlong::rows, true});
+  write_map(pictures.back().path);
   return pictures;
 }
 
 /// Takes chunks and throws them away: compiling without writing.
 class NullSink final : public LineSink {
  public:
-  std::int64_t lines_per_chunk() const noexcept override { return (std::int64_t{1} << 20) / kRowBytes; }
+  explicit NullSink(std::int64_t line_bytes) : line_bytes_(line_bytes) {}
+  std::int64_t lines_per_chunk() const noexcept override { return (std::int64_t{1} << 20) / line_bytes_; }
   Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const override {
     benchmark::DoNotOptimize(lines.data());
     return StoredChunk{address, {}, 0, 0, 0};
   }
   Result<void> put(const StoredChunk&) override { return {}; }
   Result<void> finish(const ProgramHeader&) override { return {}; }
+
+ private:
+  std::int64_t line_bytes_;
 };
 
-Job job() {
+Job job(const Picture& picture) {
   Job made;
   made.laser = {82'000'000, 41, 16'400'000};
   made.fpga = {2, 32, false, 4'294'967'295U};
   made.scanner = {8, 20, 1800, 0, true, 0};
   made.rotary.diameter_mm = 70;
-  made.rotary.lines_per_revolution = kHeight;
+  made.rotary.lines_per_revolution = picture.lines();
   made.rotary.encoder_lines = 11840;
   made.rotary.interpolation_bits = 13;
-  made.rotary.max_ab_hz = 4'000'000;
+  made.rotary.max_ab_hz = 40'000'000;
   made.image.fires = Fires::white;
   made.limits.seam_um = Rational(1, 2);
   return made;
@@ -134,15 +185,22 @@ struct Case {
   LayerStack stack;
 };
 
-Case case_of(const std::string& path) {
+Case case_of(const Picture& picture) {
   Case made;
-  made.header.plan = must(make_plan(job(), kWidth, 1));
-  made.header.sources.push_back({path, 0, kWidth, kHeight, std::string(64, '0')});
-  made.header.layers.emplace_back();
-  made.header.layer_of_revolution.push_back(0);
-  made.stack.layers.push_back({path, 0, 0});
-  made.stack.lines = kHeight;
-  made.stack.pixels = kWidth;
+  made.header.plan = must(make_plan(job(picture), picture.pixels(), picture.layers()));
+  made.header.sources.push_back({picture.path, 0, kWidth, kHeight, std::string(64, '0')});
+  for (std::int64_t layer = 0; layer < picture.layers(); ++layer) {
+    made.header.layers.emplace_back();
+    made.header.layers.back().level = picture.is_map ? layer : 0;
+    made.header.layers.back().starts_reverse = line_is_reverse(made.header.plan, layer, 0);
+    made.header.layer_of_revolution.push_back(static_cast<std::uint32_t>(layer));
+    made.stack.layers.push_back({picture.path, 0, layer});
+  }
+  made.stack.lines = picture.lines();
+  made.stack.pixels = picture.pixels();
+  made.stack.lines_along = picture.along;
+  made.stack.samples = picture.is_map ? SampleType::u16 : SampleType::bit;
+  made.stack.levels = picture.is_map ? kMapLevels : 0;
   return made;
 }
 
@@ -158,18 +216,18 @@ void decode(benchmark::State& state, const std::string& path) {
   }
 }
 
-void compile_only(benchmark::State& state, const std::string& path) {
+void compile_only(benchmark::State& state, const Picture& picture) {
   const ImageFiles files;
   CompileOptions options;
   options.threads = 1;
   for (auto unused : state) {
-    Case made = case_of(path);
-    NullSink sink;
+    Case made = case_of(picture);
+    NullSink sink(picture.line_bytes());
     must(compile(std::move(made.header), made.stack, files, sink, options));
   }
 }
 
-void compile_write(benchmark::State& state, const std::string& path, const std::string& output,
+void compile_write(benchmark::State& state, const Picture& picture, const std::string& output,
                    GrvOptions::Compression compression) {
   const ImageFiles files;
   CompileOptions options;
@@ -177,15 +235,16 @@ void compile_write(benchmark::State& state, const std::string& path, const std::
   GrvOptions grv;
   grv.compression = compression;
   for (auto unused : state) {
-    Case made = case_of(path);
-    const std::unique_ptr<LineSink> sink = must(create_grv(output, 1, kHeight, kRowBytes, grv));
+    Case made = case_of(picture);
+    const std::unique_ptr<LineSink> sink =
+        must(create_grv(output, picture.layers(), picture.lines(), picture.line_bytes(), grv));
     must(compile(std::move(made.header), made.stack, files, *sink, options));
   }
 }
 
-void verify_program(benchmark::State& state, const std::string& path, const std::string& output) {
+void verify_program(benchmark::State& state, const Picture& picture, const std::string& output) {
   const ImageFiles files;
-  const Case made = case_of(path);
+  const Case made = case_of(picture);
   VerifyOptions options;
   options.threads = 1;
   for (auto unused : state) {
@@ -236,26 +295,28 @@ class RatioReporter final : public benchmark::ConsoleReporter {
 int main(int argc, char** argv) {
   const fs::path folder = fs::temp_directory_path() / "gravure-compile-bench";
   fs::create_directories(folder);
+  int packed_programs = 0;
   for (const Picture& picture : write_pictures(folder)) {
     const std::string path = picture.path;
     const std::string raw = (folder / "raw.grv").string();
-    const std::string packed = path + ".grv";
+    const std::string packed = (folder / (std::to_string(packed_programs++) + ".grv")).string();
     const auto add = [&](const std::string& step, auto function) {
       benchmark::RegisterBenchmark((picture.name + "/" + step).c_str(), function)->Unit(benchmark::kMillisecond);
     };
     {  // verify needs it whichever order the benchmarks run in
-      Case made = case_of(path);
+      Case made = case_of(picture);
       const ImageFiles files;
-      const std::unique_ptr<LineSink> sink = must(create_grv(packed, 1, kHeight, kRowBytes));
+      const std::unique_ptr<LineSink> sink =
+          must(create_grv(packed, picture.layers(), picture.lines(), picture.line_bytes()));
       must(compile(std::move(made.header), made.stack, files, *sink, {}));
     }
     add("decode", [path](benchmark::State& state) { decode(state, path); });
-    add("compile", [path](benchmark::State& state) { compile_only(state, path); });
+    add("compile", [picture](benchmark::State& state) { compile_only(state, picture); });
     add("write",
-        [path, raw](benchmark::State& state) { compile_write(state, path, raw, GrvOptions::Compression::none); });
+        [picture, raw](benchmark::State& state) { compile_write(state, picture, raw, GrvOptions::Compression::none); });
     add("zstd",
-        [path, raw](benchmark::State& state) { compile_write(state, path, raw, GrvOptions::Compression::zstd); });
-    add("verify", [path, packed](benchmark::State& state) { verify_program(state, path, packed); });
+        [picture, raw](benchmark::State& state) { compile_write(state, picture, raw, GrvOptions::Compression::zstd); });
+    add("verify", [picture, packed](benchmark::State& state) { verify_program(state, picture, packed); });
   }
   std::vector<char*> arguments(argv, argv + argc);
   std::string defaults[] = {"--benchmark_repetitions=7", "--benchmark_enable_random_interleaving=true",
