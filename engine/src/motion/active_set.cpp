@@ -92,7 +92,7 @@ class ActiveSet {
   /// Towards the optimum of the free blocks, holding each step that would begin to fall on the way.
   std::vector<double> walk_down(std::vector<double> c) {
     while (true) {
-      const std::vector<double> target = solve();
+      std::vector<double> target = solve();
       solves_left_ -= solves_left_ > 0 ? 1 : 0;
       double share = 1;
       std::size_t first = n_;

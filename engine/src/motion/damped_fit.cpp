@@ -12,6 +12,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// matrix += vector vector^T, the lower triangle only.
+void add_outer_product(MatrixXd& matrix, const VectorXd& vector) {
+  for (Eigen::Index k = 0; k < vector.size(); ++k) {
+    const Eigen::Index left = vector.size() - k;
+    matrix.col(k).tail(left) += vector[k] * vector.tail(left);
+  }
+}
+
 constexpr Index kLags = 48;
 
 double mean_of(const std::vector<double>& values) {
@@ -50,7 +58,7 @@ Normal normal_equations(const Series& series, const VectorXd& p, bool linear_onl
       row[m + 3] = sine;
     }
     const double error = series.values[k] - model;
-    normal.matrix.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    add_outer_product(normal.matrix, row);
     normal.right += error * row;
     normal.sum_of_squares += error * error;
   }
@@ -93,7 +101,7 @@ std::vector<std::complex<double>> estimate_poles(const Series& series, std::size
     for (Index i = 0; i < lags; ++i) {
       window[i] = series.values[static_cast<std::size_t>(k + i * lag)] - mean;
     }
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(window);
+    add_outer_product(gram, window);
   }
   const Eigen::SelfAdjointEigenSolver<MatrixXd> spectrum(gram);
   const MatrixXd space = spectrum.eigenvectors().rightCols(order);

@@ -111,7 +111,7 @@ std::string identification_to_json(const motion::Identification& identification)
                   {"samples", identification.samples}});
 }
 
-std::string unreversed_to_json(const std::vector<UnreversedAxis>& axes) {
+std::string unreversed_to_json(const std::vector<UnreversedAxis>& axes, const ToolPathSummary& tool) {
   Json list = Json::array();
   for (const UnreversedAxis& axis : axes) {
     list.push_back({{"name", axis.name},
@@ -123,7 +123,19 @@ std::string unreversed_to_json(const std::vector<UnreversedAxis>& axes) {
                     {"rms_deviation_deg", axis.result.rms_deviation},
                     {"turns", axis.result.turns}});
   }
-  return text_of({{"axes", list}});
+  Json json = {{"axes", list}};
+  if (tool.clearance_mm) {
+    json["interference"] = {{"clearance_mm", number(*tool.clearance_mm)},
+                            {"turned_blocks", tool.turned_blocks},
+                            {"largest_turn_deg", tool.largest_turn_deg}};
+  }
+  if (tool.rewritten) {
+    json["rewritten"] = {{"changed_lines", tool.rewritten->changed_lines},
+                         {"largest_tilt_deg", tool.rewritten->largest_tilt_deg},
+                         {"largest_shift_mm", tool.rewritten->largest_shift_mm},
+                         {"largest_error_mm", tool.rewritten->largest_error_mm}};
+  }
+  return text_of(json);
 }
 
 }  // namespace gravure::formats

@@ -58,6 +58,21 @@ TEST(MotionJson, OfModesAndPathsHasItsKeys) {
   const json parsed = json::parse(unreversed_to_json({{"a", 0.5, result}}));
   EXPECT_EQ(parsed["axes"][0]["reversals_before"], 2);
   EXPECT_EQ(parsed["axes"][0]["reversals_after"], 0);
+  EXPECT_FALSE(parsed.contains("interference"));
+  EXPECT_FALSE(parsed.contains("rewritten"));
+}
+
+TEST(MotionJson, OfAPathWithItsToolHasItsKeys) {
+  ToolPathSummary tool;
+  tool.clearance_mm = std::numeric_limits<double>::infinity();
+  tool.turned_blocks = 3;
+  tool.rewritten = motion::Rewritten{"G1", 0.5, 0.25, 1e-6, 7};
+  const json parsed = json::parse(unreversed_to_json({}, tool));
+  EXPECT_TRUE(parsed["interference"]["clearance_mm"].is_null());
+  EXPECT_EQ(parsed["interference"]["turned_blocks"], 3);
+  EXPECT_EQ(parsed["rewritten"]["largest_tilt_deg"], 0.5);
+  EXPECT_EQ(parsed["rewritten"]["largest_shift_mm"], 0.25);
+  EXPECT_EQ(parsed["rewritten"]["changed_lines"], 7);
 }
 
 TEST(MotionText, WritesSamplesAndFigures) {

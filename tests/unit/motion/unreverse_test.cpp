@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <memory>
-#include <string>
+#include <cmath>
+#include <vector>
 
 #include "motion_test_support.hpp"
 
@@ -271,56 +269,6 @@ TEST(RotaryProgram, ReadsModalWordsAndSkipsComments) {
   EXPECT_EQ(path.xyz_mm[1][0], 4);
   EXPECT_EQ(path.line[1], 5U);
   EXPECT_NE(parse_rotary_program("G1\nA C3\n").error().message.find("line 2"), std::string::npos);
-}
-
-/// Text of the program inside the installed or downloaded package; empty where there is none.
-std::string impeller_program() {
-  static constexpr const char* kPath =
-      "/usr/share/doc/linuxcnc/examples/sample-configs/sim/axis/vismach/5axis/table-rotary-tilting/demos/"
-      "impeller-7bl-xyzac.ngc";
-  const char* package = std::getenv("GRAVURE_LINUXCNC_DEB");
-  const std::string command =
-      package != nullptr
-          ? "dpkg-deb --fsys-tarfile '" + std::string(package) + "' | tar -xO ." + kPath
-          : "cat " + std::string(kPath) + " 2>/dev/null || (zcat " + std::string(kPath) + ".gz 2>/dev/null)";
-  std::string text;
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-  char buffer[65536];
-  for (std::size_t got = 0; pipe && (got = std::fread(buffer, 1, sizeof buffer, pipe.get())) > 0;) {
-    text.append(buffer, got);
-  }
-  return text;
-}
-
-TEST(ImpellerProgram, HasItsReversalsFoundRemovedOrKeptAndTheDeviationBounded) {
-  const std::string text = impeller_program();
-  if (text.empty()) {
-    GTEST_SKIP()
-        << "the program of Debian's linuxcnc-uspace is not here: install the package or set GRAVURE_LINUXCNC_DEB to it";
-  }
-  const RotaryPath path = parse_rotary_program(text).value();
-  ASSERT_EQ(path.a_deg.size(), 4491U);
-  EXPECT_EQ(count_reversals(path.a_deg), 178U);
-  EXPECT_EQ(count_reversals(path.c_deg), 100U);
-  std::vector<double> block;
-  for (std::size_t k = 0; k < path.line.size(); ++k) {
-    block.push_back(static_cast<double>(k));
-  }
-  const std::vector<double> c_whole = unwrapped(path.c_deg, 360);
-  std::size_t removed = 0;
-  for (const auto& [angle, tolerance] :
-       {std::pair(path.a_deg, 0.2), std::pair(path.a_deg, 1.0), std::pair(path.c_deg, 1.0), std::pair(c_whole, 2.5),
-        std::pair(c_whole, 20.0)}) {
-    const auto result = remove_reversals({block, angle, tolerance, 16});
-    ASSERT_TRUE(result) << result.error().message;
-    EXPECT_EQ(result.value().reversals_after, result.value().turns.size() - 2);
-    EXPECT_LE(result.value().largest_deviation, tolerance);
-    removed += result.value().reversals_before - result.value().reversals_after;
-    std::printf("%zu of %zu reversals kept, %zu control points, at most %.3f degrees off\n",
-                result.value().reversals_after, result.value().reversals_before, result.value().control_points,
-                result.value().largest_deviation);
-  }
-  EXPECT_GT(removed, 50U);
 }
 
 }  // namespace

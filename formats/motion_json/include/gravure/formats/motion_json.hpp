@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gravure/motion/identify.hpp"
 #include "gravure/motion/profile.hpp"
+#include "gravure/motion/rotary_rewrite.hpp"
 #include "gravure/motion/search.hpp"
 #include "gravure/motion/settling.hpp"
 #include "gravure/motion/unreverse.hpp"
@@ -45,8 +47,18 @@ struct UnreversedAxis {
   motion::Unreversed result;
 };
 
-/// axes[{name, reversals_before, reversals_after, control_points, largest_deviation_deg, rms_deviation_deg, turns}].
-std::string unreversed_to_json(const std::vector<UnreversedAxis>& axes);
+/// What became of the tool and of its program.
+struct ToolPathSummary {
+  std::optional<double> clearance_mm;  ///< where surfaces were given; infinite where no point of them was near
+  std::size_t turned_blocks = 0;
+  double largest_turn_deg = 0;
+  std::optional<motion::Rewritten> rewritten;
+};
+
+/// axes[{name, reversals_before, reversals_after, control_points, largest_deviation_deg, rms_deviation_deg, turns}];
+/// with surfaces interference{clearance_mm, turned_blocks, largest_turn_deg}; with a new program
+/// rewritten{changed_lines, largest_tilt_deg, largest_shift_mm, largest_error_mm}.
+std::string unreversed_to_json(const std::vector<UnreversedAxis>& axes, const ToolPathSummary& tool = {});
 
 /// CSV of samples: "time_s,position_mm,velocity_mm_s,acceleration_mm_s2,jerk_mm_s3".
 std::string samples_to_csv(const std::vector<motion::Sample>& samples);

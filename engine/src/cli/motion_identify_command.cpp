@@ -4,7 +4,6 @@
 
 #include "gravure/core/file_output.hpp"
 #include "gravure/motion/identify.hpp"
-#include "gravure/motion/unreverse.hpp"
 #include "motion_command.hpp"
 #include "motion_options.hpp"
 
@@ -67,52 +66,6 @@ Result<int> run_identify(const IdentifyOptions& options, bool json) {
   return kDone;
 }
 
-struct UnreverseOptions {
-  std::string program;
-  double tolerance_deg = 0;
-  std::size_t control_points = 16;
-  OutputOptions output;
-};
-
-std::string unreversed_text(const std::vector<formats::UnreversedAxis>& axes) {
-  std::string text;
-  for (const auto& axis : axes) {
-    text += fmt::format("{}: {} of {} reversals kept, {} control points, at most {:.4f} degrees off (rms {:.4f})\n",
-                        axis.name, axis.result.reversals_after, axis.result.reversals_before,
-                        axis.result.control_points, axis.result.largest_deviation, axis.result.rms_deviation);
-  }
-  return text;
-}
-
-Result<int> run_unreverse(const UnreverseOptions& options, bool json) {
-  GRAVURE_TRY(const std::string text, read_file(options.program, kMostBytes));
-  auto read = motion::parse_rotary_program(text);
-  if (!read) {
-    return Error{read.error().code, options.program + ": " + read.error().message};
-  }
-  const motion::RotaryPath path = std::move(read).value();
-  std::vector<double> block(path.line.size());
-  for (std::size_t k = 0; k < block.size(); ++k) {
-    block[k] = static_cast<double>(k);
-  }
-  std::vector<formats::UnreversedAxis> axes;
-  std::vector<formats::Curve> curves;
-  for (const auto& [name, angle] : {std::pair("a", path.a_deg), std::pair("c", motion::unwrapped(path.c_deg, 360))}) {
-    GRAVURE_TRY(motion::Unreversed result,
-                motion::remove_reversals({block, angle, options.tolerance_deg, options.control_points}));
-    curves.push_back({std::string(name) + " degrees", block, result.angle});
-    axes.push_back({name, options.tolerance_deg, std::move(result)});
-  }
-  std::string csv = "line,a_before_deg,a_deg,c_before_deg,c_deg\n";
-  for (std::size_t k = 0; k < block.size() && !options.output.csv.empty(); ++k) {
-    csv += fmt::format("{},{},{},{},{}\n", path.line[k], path.a_deg[k], axes[0].result.angle[k], path.c_deg[k],
-                       axes[1].result.angle[k]);
-  }
-  GRAVURE_CHECK(write_outputs(options.output, csv, "Rotary axes without unintended reversals", "block", curves));
-  print(json ? formats::unreversed_to_json(axes) : unreversed_text(axes));
-  return kDone;
-}
-
 }  // namespace
 
 void add_motion_identify(CLI::App& motion, Command& command) {
@@ -127,19 +80,6 @@ void add_motion_identify(CLI::App& motion, Command& command) {
   add_output_options(*verb, options->output);
   verb->callback(
       [&command, options] { command.run = [&command, options] { return run_identify(*options, command.json); }; });
-}
-
-void add_motion_unreverse(CLI::App& motion, Command& command) {
-  CLI::App* verb =
-      add_verb(motion, command, "unreverse", "Remove unintended reversals of the rotary axes of a program");
-  const auto options = std::make_shared<UnreverseOptions>();
-  verb->add_option("PROGRAM", options->program, "G-code with A and C words in degrees")->required();
-  verb->add_option("--tolerance-deg", options->tolerance_deg, "Reversals up to this go; no block moves by more")
-      ->required();
-  verb->add_option("--control-points", options->control_points, "Of each piece to begin with")->capture_default_str();
-  add_output_options(*verb, options->output);
-  verb->callback(
-      [&command, options] { command.run = [&command, options] { return run_unreverse(*options, command.json); }; });
 }
 
 }  // namespace gravure::cli
