@@ -4,7 +4,7 @@
 // prescaler ([B] eqs 1 and 2, with a fraction that makes every ratio exact):
 //   acc += num; carry = acc >= den; acc -= carry * den; count += increment + carry.
 // Here the accumulator is x = K num mod den of the next step K, and its carry is x < num. With prescaler 1 both clocks
-// step, so that two accumulators, x of the odd and y of the even steps, go on by 2 num mod den each.
+// step, so that two accumulators, x of the odd and y of the even steps, go on by addend = 2 num mod den each.
 //
 // enable          low: everything stands
 // load            takes all registers, LOAD_CLOCKS seed clocks later; starts a new count with acc = 0
@@ -56,7 +56,8 @@ module ab_pacer #(
   wire over = increment > QUARTER;
   wire quarter = increment == QUARTER;
 
-  reg has_fraction;  // of the registers that `step` belongs to
+  reg has_fraction;   // of the registers that `step` belongs to
+  reg word_fraction;  // and of those of the word that follows
   reg [BITS-1:0] next_step;
   reg next_step_ok, next_step_bad;
 
@@ -87,6 +88,7 @@ module ab_pacer #(
       carry <= 2'd0;
       step <= 0;
       has_fraction <= 1'b0;
+      word_fraction <= 1'b0;
       next_step_ok <= 1'b0;
       next_step_bad <= 1'b0;
       refused <= 1'b0;
@@ -107,7 +109,7 @@ module ab_pacer #(
       add_due <= pace_due;
       word_due <= add_due;
       due <= word_due;
-      carry <= carried & word_due;
+      carry <= carried & word_due & {2{word_fraction}};
 
       next_step_ok <= load_increment && !load && !busy && !over && !(quarter && has_fraction);
       next_step_bad <= (load_increment && !load && !busy && (over || (quarter && has_fraction))) ||
@@ -116,6 +118,7 @@ module ab_pacer #(
         step <= new_step;
         has_fraction <= !fraction_off;
       end else if (next_step_ok) step <= next_step;
+      if (loading[6]) word_fraction <= !fraction_off;
       if (loading[2]) refused <= !new_ok;
       if (next_step_ok) refused <= 1'b0;
       if (next_step_bad) refused <= 1'b1;
@@ -136,46 +139,56 @@ module ab_pacer #(
 
   generate
     if (FRACTION != 0) begin : with_fraction
-      reg [F:0] rest;    // den - num, with its sign
-      reg [F:0] twice;   // 2 num - den, with its sign
+      // With below = den - addend, the state of an accumulator is x - below, so that its sign alone tells what comes next:
+      // x - below >= 0: x + addend - den, else x + addend. And x < num is x - below < num - below.
+      reg [F:0] rest;             // den - num, with its sign
+      reg [F:0] twice;            // 2 num - den, with its sign: num - rest
       reg [F-1:0] num_2, rest_2;  // 2 num mod den, and den less that
+      reg [F:0] first_2, second_2;  // num - rest_2, num_2 - rest_2: where the two accumulators begin
       reg num_zero;
-      reg [F-1:0] x, y, addend, below, add_x, add_y, num;
+      reg [F:0] x, y, add_x, add_y, limit;
+      reg [F-1:0] addend, below;
       reg two;
       reg [1:0] less;
       assign fraction_ok = !rest[F] && rest != 0;
       assign fraction_off = num_zero;
       assign carried = less;
       wire wraps = !twice[F];
+      /* verilator lint_off UNUSEDSIGNAL */  // the lowest bit only makes a carry
+      wire [F+1:0] next_x = {x, 1'b1} + (x[F] ? {1'b0, addend, 1'b0} : {1'b1, ~below, 1'b1});
+      wire [F+1:0] next_y = {y, 1'b1} + (y[F] ? {1'b0, addend, 1'b0} : {1'b1, ~below, 1'b1});
+      /* verilator lint_on UNUSEDSIGNAL */
       always @(posedge clk) begin
         rest <= {1'b0, new_den} - {1'b0, new_num};
         num_zero <= new_num == 0;
         twice <= {1'b0, new_num} - {1'b0, rest[F-1:0]};
         num_2 <= wraps ? twice[F-1:0] : {new_num[F-2:0], 1'b0};
         rest_2 <= wraps ? {rest[F-2:0], 1'b0} : {F{1'b0}} - twice[F-1:0];
+        first_2 <= {1'b0, new_num} - {1'b0, rest_2};
+        second_2 <= {1'b0, num_2} - {1'b0, rest_2};
         if (rst) begin
-          x <= 0;
-          y <= 0;
+          x <= {(F + 1) {1'b1}};
+          y <= {(F + 1) {1'b1}};
+          limit <= {(F + 1) {1'b1}};
           addend <= 0;
           below <= 1;
           two <= 1'b1;
-          num <= 0;
         end else begin
           if (loading[4]) begin
-            x <= new_num;
-            y <= num_2;
+            x <= new_one ? first_2 : twice;
+            y <= second_2;
             addend <= new_one ? num_2 : new_num;
             below <= new_one ? rest_2 : rest[F-1:0];
             two <= new_one;
           end else if (pace_due != 0) begin
-            x <= x >= below ? x - below : x + addend;
-            y <= y >= below ? y - below : y + addend;
+            x <= next_x[F+1:1];
+            y <= next_y[F+1:1];
           end
-          if (loading[5]) num <= new_num;
+          if (loading[5]) limit <= new_one ? first_2 : twice;
         end
         add_x <= x;
         add_y <= two ? y : x;
-        less <= rst ? 2'd0 : {add_y < num, add_x < num};
+        less <= {$signed(add_y) < $signed(limit), $signed(add_x) < $signed(limit)};
       end
     end else begin : without_fraction
       reg num_zero;
@@ -239,10 +252,8 @@ module ab_pacer #(
     if (has_fraction) assert (step < QUARTER);
     if (!has_fraction) assert (carry == 0);
     if (next_step_ok) assert (next_step <= QUARTER && !(has_fraction && next_step == QUARTER) && loading[7:1] == 0);
-    if (loading[7:6] != 0) assert (with_fraction.num == new_num);
-    if (!has_fraction && loading[7:6] == 0) assert (with_fraction.num == 0);
-    if (!has_fraction && !loading[7]) assert (carried == 0);
-    if (loading[7] && fraction_off) assert (carried == 0);
+    if (!loading[7]) assert (word_fraction == has_fraction);
+    if (loading[7]) assert (word_fraction == !fraction_off);
 `ifdef FORMAL_CONTRACT
     assert ({carry, due} == ref_3);
 `endif

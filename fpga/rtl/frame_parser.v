@@ -5,7 +5,8 @@
 // whole is committed, any other is rolled back and stops the parser: it takes no byte until clear. Faults are sticky
 // until clear; of several in one frame the first of sequence, shape, checksum is reported.
 // position_load sets the line that must come next (after clear, before a job).
-// Latency: commit or fault one clock after the frame's last byte; line_valid on the same clock as commit.
+// Latency: commit or fault three clocks after the frame's last byte (VERDICT_LATENCY); line_valid on the same clock as
+// commit. The settings and the position are to stand for two clocks before a frame's last byte.
 // Reset: waiting for revolution 0, line 0.
 `default_nettype none
 module frame_parser (
@@ -41,7 +42,18 @@ module frame_parser (
   reg [15:0] new_first_slot;
 
   wire stopped = sequence_error || shape_error || checksum_error;
-  wire take = in_valid && !stopped;
+  reg ended;  // the last byte was taken on the clock before; the next frame may begin already
+  reg window_fits, last_line;
+  reg [16:0] window_end;
+  reg [31:0] next_line;
+  wire bad = bad_sequence || bad_shape || bad_checksum || !window_fits;
+  reg byte_valid;
+  reg [7:0] byte_data;
+  always @(posedge clk) begin
+    byte_valid <= in_valid && !rst && !clear;
+    byte_data <= in_data;
+  end
+  wire take = byte_valid && !stopped && !(ended && bad);
   wire [12:0] window_bytes = window_slots[15:3] + {12'd0, window_slots[2:0] != 0};
   wire [7:0] unused_bits = window_slots[2:0] == 0 ? 8'h00 : 8'hFF >> window_slots[2:0];
 `ifdef FORMAL
@@ -49,21 +61,26 @@ module frame_parser (
 `else
   wire [31:0] crc;
   crc32c checksum (
-      .clk(clk), .rst(rst), .start(take && state == IDLE), .valid(take && (state == HEAD || state == BITS)),
-      .data(in_data), .crc(crc)
+      .clk(clk), .rst(rst), .start(byte_valid && state == IDLE),
+      .valid(byte_valid && (state == HEAD || state == BITS)), .data(byte_data), .crc(crc)
   );
 `endif
 
   wire [2:0] byte_number = place[2:0];
   wire [63:0] expected_revolution = {32'd0, revolution};
   wire [63:0] expected_line = {32'd0, line};
-  wire wrong_revolution = in_data != expected_revolution[8*byte_number+:8];
-  wire wrong_line = in_data != expected_line[8*byte_number+:8];
-  wire wrong_crc = in_data != crc[8*byte_number[1:0]+:8];
-  wire window_fits = {1'b0, new_first_slot} + {1'b0, window_slots} <= {1'b0, slots_per_line};
+  wire wrong_revolution = byte_data != expected_revolution[8*byte_number+:8];
+  wire wrong_line = byte_data != expected_line[8*byte_number+:8];
+  wire wrong_crc = byte_data != crc[8*byte_number[1:0]+:8];
   wire frame_end = take && state == CHECK && place == 3;
-  wire bad = bad_sequence || bad_shape || bad_checksum || wrong_crc || !window_fits;
-  wire last_line = line + 32'd1 >= lines_per_revolution;
+
+  always @(posedge clk) begin
+    window_end <= {1'b0, new_first_slot} + {1'b0, window_slots};
+    window_fits <= window_end <= {1'b0, slots_per_line};
+    next_line <= line + 32'd1;
+    last_line <= next_line >= lines_per_revolution;
+    ended <= frame_end && !rst && !clear;
+  end
 
   always @(posedge clk) begin
     push <= 1'b0;
@@ -87,55 +104,57 @@ module frame_parser (
         revolution <= 0;
         line <= 0;
       end
-    end else if (take) begin
-      place <= place + 13'd1;
-      case (state)
-        IDLE: begin
-          place <= 0;
-          bad_sequence <= 1'b0;
-          bad_shape <= 1'b0;
-          bad_checksum <= 1'b0;
-          if (in_data == KIND) state <= HEAD;
-          else shape_error <= 1'b1;
+    end else begin
+      if (ended) begin
+        commit <= !bad;
+        line_valid <= !bad;
+        rollback <= bad;
+        sequence_error <= bad_sequence;
+        shape_error <= !bad_sequence && (bad_shape || !window_fits);
+        checksum_error <= !bad_sequence && !bad_shape && window_fits && bad_checksum;
+        if (!bad) begin
+          first_slot <= new_first_slot;
+          line <= last_line ? 32'd0 : next_line;
+          if (last_line) revolution <= revolution + 32'd1;
         end
-        HEAD: begin
-          if (place[4:3] == 2'd0 && wrong_revolution) bad_sequence <= 1'b1;
-          if (place[4:3] == 2'd1 && wrong_line) bad_sequence <= 1'b1;
-          if (place == 16) new_first_slot[7:0] <= in_data;
-          if (place == 17) new_first_slot[15:8] <= in_data;
-          if (place >= 18 && in_data != 0) bad_shape <= 1'b1;
-          if (place == 23) begin
+      end
+      if (take) begin
+        place <= place + 13'd1;
+        case (state)
+          IDLE: begin
             place <= 0;
-            state <= window_bytes == 0 ? CHECK : BITS;
+            bad_sequence <= 1'b0;
+            bad_shape <= 1'b0;
+            bad_checksum <= 1'b0;
+            if (byte_data == KIND) state <= HEAD;
+            else shape_error <= 1'b1;
           end
-        end
-        BITS: begin
-          push <= 1'b1;
-          push_data <= in_data;
-          if (place == window_bytes - 13'd1) begin
-            if ((in_data & unused_bits) != 0) bad_shape <= 1'b1;
-            place <= 0;
-            state <= CHECK;
-          end
-        end
-        CHECK: begin
-          if (wrong_crc) bad_checksum <= 1'b1;
-          if (frame_end) begin
-            state <= IDLE;
-            commit <= !bad;
-            line_valid <= !bad;
-            rollback <= bad;
-            sequence_error <= bad_sequence;
-            shape_error <= !bad_sequence && (bad_shape || !window_fits);
-            checksum_error <= !bad_sequence && !bad_shape && window_fits && (bad_checksum || wrong_crc);
-            if (!bad) begin
-              first_slot <= new_first_slot;
-              line <= last_line ? 32'd0 : line + 32'd1;
-              if (last_line) revolution <= revolution + 32'd1;
+          HEAD: begin
+            if (place[4:3] == 2'd0 && wrong_revolution) bad_sequence <= 1'b1;
+            if (place[4:3] == 2'd1 && wrong_line) bad_sequence <= 1'b1;
+            if (place == 16) new_first_slot[7:0] <= byte_data;
+            if (place == 17) new_first_slot[15:8] <= byte_data;
+            if (place >= 18 && byte_data != 0) bad_shape <= 1'b1;
+            if (place == 23) begin
+              place <= 0;
+              state <= window_bytes == 0 ? CHECK : BITS;
             end
           end
-        end
-      endcase
+          BITS: begin
+            push <= 1'b1;
+            push_data <= byte_data;
+            if (place == window_bytes - 13'd1) begin
+              if ((byte_data & unused_bits) != 0) bad_shape <= 1'b1;
+              place <= 0;
+              state <= CHECK;
+            end
+          end
+          CHECK: begin
+            if (wrong_crc) bad_checksum <= 1'b1;
+            if (frame_end) state <= IDLE;
+          end
+        endcase
+      end
     end
     if (position_load && !rst) begin
       revolution <= position_revolution;
@@ -145,22 +164,22 @@ module frame_parser (
 
 `ifdef FORMAL
   reg valid = 1'b0;
-  reg was_bad, was_end, was_stopped;
-  reg was_wrong_crc;
+  reg was_bad, was_ended, was_stopped, was_wrong_crc, crc_was_wrong;
   initial assume (rst);
   always @(posedge clk) begin
     valid <= 1'b1;
-    was_end <= frame_end && !rst && !clear;
+    was_ended <= ended && !rst && !clear;
     was_bad <= bad;
-    was_wrong_crc <= bad_checksum || wrong_crc;
     was_stopped <= stopped;
+    crc_was_wrong <= take && state == CHECK && (wrong_crc || (place != 0 && crc_was_wrong)) || (!take && crc_was_wrong);
+    was_wrong_crc <= crc_was_wrong;
   end
   always @(*) if (valid) begin
-    if (commit) assert (was_end && !was_bad && !was_wrong_crc && !was_stopped);  // a bad frame never reaches the gate
+    if (commit) assert (was_ended && !was_bad && !was_wrong_crc && !was_stopped);  // a bad frame never reaches the gate
     assert (commit == line_valid);
     assert (!(commit && rollback));
     assert (!(commit && push));
-    if (was_end && was_bad) assert (stopped && rollback);
+    if (was_ended && was_bad) assert (stopped && rollback);
   end
 `endif
 endmodule

@@ -2,8 +2,9 @@
 //
 // push writes on trial; commit makes all that was pushed before this clock readable; rollback forgets what is not
 // committed (and a push on the same clock). `data` is shown while `valid`; pop takes it. level counts committed bytes
-// that were not yet popped. A push without room is dropped and sets `overflow`, sticky until flush or reset.
-// Latency: a committed byte is valid two clocks after the commit at the earliest. Memory: one write and one registered
+// that were not yet popped, almost_empty says that they are `low_level` or fewer. A push without room is dropped and sets `overflow`, sticky until flush or reset.
+// Latency: a committed byte is valid two clocks after the commit at the earliest; level shows one clock after what it
+// counts, almost_empty two (LEVEL_LATENCY). Memory: one write and one registered
 // read port, so it maps to block RAM. Reset and flush: empty.
 `default_nettype none
 module line_fifo #(
@@ -18,9 +19,11 @@ module line_fifo #(
     input wire commit,
     input wire rollback,
     input wire pop,
+    input wire [ADDRESS_BITS+1:0] low_level,
     output reg valid,
     output reg [W-1:0] data,
-    output wire [ADDRESS_BITS+1:0] level,
+    output reg [ADDRESS_BITS+1:0] level,
+    output reg almost_empty,
     output wire full,
     output reg overflow
 );
@@ -30,12 +33,11 @@ module line_fifo #(
   reg [A:0] committed;
   reg [A:0] taken;      // moved to `data`
 
-  wire [A:0] used = written - taken;
   wire [A:0] ready = committed - taken;
-  assign full = used[A];
-  assign level = {1'b0, ready} + {{(A + 1) {1'b0}}, valid};
+  wire any_ready = committed != taken;
+  assign full = written == (taken ^ {1'b1, {A{1'b0}}});
   wire accept = push && !full && !rollback && !flush && !rst;
-  wire refill = (!valid || pop) && ready != 0;
+  wire refill = (!valid || pop) && any_ready;
 
   always @(posedge clk) begin
     if (accept) memory[written[A-1:0]] <= push_data;
@@ -43,6 +45,9 @@ module line_fifo #(
   end
 
   always @(posedge clk) begin
+    almost_empty <= level <= low_level;
+    if (rst || flush) level <= 0;
+    else level <= {1'b0, ready} + {{(A + 1) {1'b0}}, valid};
     if (rst || flush) begin
       written <= 0;
       committed <= 0;
@@ -69,6 +74,7 @@ module line_fifo #(
   reg past_valid = 1'b0;
   initial assume (rst);
   wire [A:0] from_taken = place - taken;
+  wire [A:0] used = written - taken;
   always @(posedge clk) begin
     past_valid <= 1'b1;
     if (accept && written == place) pushed <= push_data;
@@ -80,7 +86,7 @@ module line_fifo #(
   always @(posedge clk) if (refill && taken == place) shown_byte <= pushed;
   always @(*) if (past_valid) begin
     assert (used <= (1 << A));
-    assert (ready <= used);
+    assert (committed - taken <= used);
     if (from_taken < used) assert (memory[place[A-1:0]] == pushed);
     if (shown && valid) assert (data == shown_byte);
   end

@@ -113,7 +113,7 @@ module synchro #(
   wire [FIFO_BITS+1:0] level;
   line_fifo #(.W(8), .ADDRESS_BITS(FIFO_BITS)) bits (
       .clk(clk), .rst(rst), .flush(acknowledge), .push(push), .push_data(push_data), .commit(commit),
-      .rollback(rollback), .pop(byte_take), .valid(byte_valid), .data(byte_data), .level(level), .full(),
+      .rollback(rollback), .pop(byte_take), .valid(byte_valid), .data(byte_data), .low_level({(FIFO_BITS + 2) {1'b0}}), .level(level), .almost_empty(), .full(),
       .overflow(overflow)
   );
 
@@ -124,7 +124,7 @@ module synchro #(
   wire [15:0] queue_first_slot;
   line_fifo #(.W(16), .ADDRESS_BITS(4)) queue (
       .clk(clk), .rst(rst), .flush(acknowledge), .push(line_valid), .push_data(first_slot), .commit(queue_commit),
-      .rollback(1'b0), .pop(first), .valid(queue_valid), .data(queue_first_slot), .level(), .full(),
+      .rollback(1'b0), .pop(first), .valid(queue_valid), .data(queue_first_slot), .low_level(6'd0), .level(), .almost_empty(), .full(),
       .overflow(queue_overflow)
   );
 

@@ -161,12 +161,14 @@ struct LineFifoPorts {
     visit("rollback", in.rollback);
     visit("pop", in.pop);
     visit("push_data", in.push_data, 8);
+    visit("low_level", in.low_level, 6);
   }
   template <class Out, class Visitor>
   static void out(Out& out, Visitor&& visit) {
     visit("valid", out.valid);
     visit("data", out.data, 8);
     visit("level", out.level, 6);
+    visit("almost_empty", out.almost_empty);
     visit("full", out.full);
     visit("overflow", out.overflow);
   }

@@ -18,6 +18,7 @@ std::uint8_t byte_of(std::uint64_t word, unsigned number) noexcept {
 void FrameParser::reset(bool all) noexcept {
   part_ = Part::idle;
   place_ = 0;
+  ended_ = false;
   bad_sequence_ = bad_shape_ = bad_checksum_ = false;
   new_first_slot_ = 0;
   out_.sequence_error = out_.shape_error = out_.checksum_error = false;
@@ -60,30 +61,27 @@ void FrameParser::take_bits(const Inputs& in, unsigned place) noexcept {
   }
 }
 
-void FrameParser::end_frame(const Inputs& in) noexcept {
-  const bool shape = bad_shape_ || new_first_slot_ + in.window_slots > in.slots_per_line;
+/// The clock after a frame's last byte.
+void FrameParser::judge() noexcept {
+  const bool shape = bad_shape_ || !window_fits_;
   out_.sequence_error = bad_sequence_;
   out_.shape_error = !bad_sequence_ && shape;
   out_.checksum_error = !bad_sequence_ && !shape && bad_checksum_;
-  out_.rollback = bad_sequence_ || shape || bad_checksum_;
+  out_.rollback = bad();
   out_.commit = out_.line_valid = !out_.rollback;
-  part_ = Part::idle;
   if (!out_.commit) {
     return;
   }
   out_.first_slot = new_first_slot_;
-  if (out_.line + 1 >= in.lines_per_revolution) {
-    out_.line = 0;
-    ++out_.revolution;
-  } else {
-    ++out_.line;
-  }
+  out_.line = last_line_ ? 0 : sums_.next_line;
+  out_.revolution += last_line_ ? 1U : 0U;
 }
 
 void FrameParser::take_check(const Inputs& in, unsigned place, std::uint32_t crc) noexcept {
   bad_checksum_ = bad_checksum_ || in.in_data != byte_of(crc, place % 4);
   if (place == 3) {
-    end_frame(in);
+    part_ = Part::idle;
+    ended_ = true;
   }
 }
 
@@ -108,22 +106,40 @@ void FrameParser::take(const Inputs& in, std::uint32_t crc) noexcept {
   }
 }
 
-FrameParser::Outputs FrameParser::step(const Inputs& in) noexcept {
-  const bool stopped = out_.sequence_error || out_.shape_error || out_.checksum_error;
+FrameParser::Outputs FrameParser::step(const Inputs& now) noexcept {
+  Inputs in = now;  // the byte of the clock before
+  in.in_valid = byte_valid_;
+  in.in_data = byte_data_;
+  byte_valid_ = now.in_valid && !now.rst && !now.clear;
+  byte_data_ = now.in_data;
+  const bool stopped = out_.sequence_error || out_.shape_error || out_.checksum_error || (ended_ && bad());
   const bool taken = in.in_valid && !stopped;
   const std::uint32_t crc = crc_;  // of the bytes before this clock
   crc_ = checksum_
              .step({.rst = in.rst,
-                    .start = taken && part_ == Part::idle,
-                    .valid = taken && (part_ == Part::head || part_ == Part::bits),
+                    .start = in.in_valid && part_ == Part::idle,
+                    .valid = in.in_valid && (part_ == Part::head || part_ == Part::bits),
                     .data = in.in_data})
              .crc;
+  const Sums sums{.window_end = static_cast<std::uint32_t>(new_first_slot_) + in.window_slots,
+                  .next_line = out_.line + 1};
+  const bool window_fits = sums_.window_end <= in.slots_per_line;
+  const bool last_line = sums_.next_line >= in.lines_per_revolution;
   out_.push = out_.commit = out_.rollback = out_.line_valid = false;
   if (in.rst || in.clear) {
     reset(in.rst);
-  } else if (taken) {
-    take(in, crc);
+  } else {
+    if (ended_) {
+      judge();
+    }
+    ended_ = false;
+    if (taken) {
+      take(in, crc);
+    }
   }
+  sums_ = sums;
+  window_fits_ = window_fits;
+  last_line_ = last_line;
   if (in.position_load && !in.rst) {
     out_.revolution = in.position_revolution;
     out_.line = in.position_line;

@@ -12,6 +12,7 @@ namespace gravure::fpga {
 class FrameParser {
  public:
   static constexpr std::uint8_t kFrameKind = 0xA5;
+  static constexpr int kVerdictLatency = 3;  ///< clocks from a frame's last byte to commit or fault
 
   struct Inputs {
     bool rst = false;
@@ -39,9 +40,14 @@ class FrameParser {
     std::uint32_t line = 0;
   };
 
-  Outputs step(const Inputs& in) noexcept;
+  Outputs step(const Inputs& now) noexcept;
 
  private:
+  /// Registers on the way from the settings to the verdict.
+  struct Sums {
+    std::uint32_t window_end = 0;  ///< 17 bits
+    std::uint32_t next_line = 1;
+  };
   enum class Part : std::uint8_t { idle, head, bits, check };
 
   void reset(bool all) noexcept;
@@ -49,7 +55,8 @@ class FrameParser {
   void take_head(const Inputs& in, unsigned place) noexcept;
   void take_bits(const Inputs& in, unsigned place) noexcept;
   void take_check(const Inputs& in, unsigned place, std::uint32_t crc) noexcept;
-  void end_frame(const Inputs& in) noexcept;
+  void judge() noexcept;
+  bool bad() const noexcept { return bad_sequence_ || bad_shape_ || bad_checksum_ || !window_fits_; }
   void enter(Part part) noexcept;
 
   Part part_ = Part::idle;
@@ -57,6 +64,12 @@ class FrameParser {
   bool bad_sequence_ = false;
   bool bad_shape_ = false;
   bool bad_checksum_ = false;
+  bool byte_valid_ = false;
+  std::uint8_t byte_data_ = 0;
+  bool ended_ = false;  ///< the last byte was taken on the clock before
+  Sums sums_;
+  bool window_fits_ = false;
+  bool last_line_ = false;
   std::uint16_t new_first_slot_ = 0;
   Crc32c checksum_;
   std::uint32_t crc_ = 0;

@@ -11,6 +11,8 @@ namespace gravure::fpga {
 template <class Word>
 class TrialFifo {
  public:
+  static constexpr int kLevelLatency = 1;
+
   struct Inputs {
     bool rst = false;
     bool flush = false;
@@ -19,11 +21,13 @@ class TrialFifo {
     bool rollback = false;
     bool pop = false;
     Word push_data = 0;
+    std::uint32_t low_level = 0;
   };
   struct Outputs {
     bool valid = false;
     Word data = 0;
-    std::uint32_t level = 0;  ///< committed and not yet popped
+    std::uint32_t level = 0;   ///< committed and not yet popped, kLevelLatency clocks ago
+    bool almost_empty = true;  ///< level was low_level or less, one clock later
     bool full = false;
     bool overflow = false;  ///< sticky until flush
   };
@@ -37,9 +41,11 @@ class TrialFifo {
     if (refill) {
       out_.data = memory_[taken_ & mask];
     }
+    out_.almost_empty = out_.level <= in.low_level;
+    out_.level = static_cast<std::uint32_t>(committed_ - taken_) + (out_.valid ? 1U : 0U);
     if (in.rst || in.flush) {
       written_ = committed_ = taken_ = 0;
-      out_ = {.data = out_.data};
+      out_ = {.data = out_.data, .almost_empty = out_.almost_empty};
       return out_;
     }
     const std::uint64_t before_push = written_;
@@ -55,7 +61,6 @@ class TrialFifo {
     }
     taken_ += refill ? 1 : 0;
     out_.valid = refill || (out_.valid && !in.pop);
-    out_.level = static_cast<std::uint32_t>(committed_ - taken_) + (out_.valid ? 1U : 0U);
     out_.full = written_ - taken_ == memory_.size();
     return out_;
   }
