@@ -178,7 +178,7 @@ std::int64_t codec_state_bytes(const TiffPageInfo& info) {
 }  // namespace
 
 std::int64_t TiffPageInfo::codec_bytes() const {
-  constexpr std::int64_t kHandle = 64 * 1024;
+  constexpr std::int64_t kHandle = std::int64_t{64} << 10;
   const std::int64_t stored = compressed() || tiled ? largest_block_bytes : 0;
   return kHandle + 32 * blocks + stored + codec_state_bytes(*this);
 }

@@ -35,6 +35,28 @@ TEST(GrvDamage, IsNoticedForOneFlippedBitInAnyByte) {
   }
 }
 
+/// What a bad disk or a careless editor leaves: runs of zeros, of 0xFF, of anything, bytes copied from elsewhere.
+TEST(GrvDamage, IsNoticedForRunsOfOtherBytesAnywhere) {
+  SCOPED_TRACE(testing::Message() << "rerun with GRAVURE_TEST_SEED=" << test_seed());
+  std::mt19937 random(test_seed());
+  const Bytes good = image_of(victim(), Compression::zstd);
+  for (int trial = 0; trial < 3000; ++trial) {
+    Bytes image = good;
+    const std::size_t length = 1 + random() % (trial % 2 == 0 ? 8 : 4096);
+    const std::size_t at = random() % (image.size() - std::min(length, image.size() - 1));
+    const std::size_t from = random() % (image.size() - std::min(length, image.size() - 1));
+    const unsigned kind = random() % 4;
+    for (std::size_t i = at; i < std::min(at + length, image.size()); ++i) {
+      image[i] = kind == 0   ? std::byte{0}
+                 : kind == 1 ? std::byte{0xFF}
+                 : kind == 2 ? static_cast<std::byte>(random())
+                             : good[(from + i - at) % good.size()];
+    }
+    const auto bits = read_image(image);
+    ASSERT_EQ(static_cast<bool>(bits), image == good) << "trial " << trial << ": " << length << " bytes at " << at;
+  }
+}
+
 TEST(GrvDamage, IsNoticedForEveryLengthOfATruncatedFile) {
   const Bytes image = image_of(victim(), Compression::zstd);
   std::size_t chunks_named = 0;
