@@ -31,7 +31,8 @@ std::vector<std::byte> starter_picture(int layer) {
       const bool rising = (x + y) % kCell < 4;
       const bool falling = (x - y + kStarterLines) % kCell < 4;
       if (layer == 0 ? rising || falling : rising && falling) {
-        bits[static_cast<std::size_t>(y * (kStarterPixels / 8) + x / 8)] |= static_cast<std::byte>(0x80U >> (x % 8));
+        const int at = y * (kStarterPixels / 8) + x / 8;
+        bits[static_cast<std::size_t>(at)] |= static_cast<std::byte>(0x80U >> (x % 8));
       }
     }
   }

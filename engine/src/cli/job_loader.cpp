@@ -106,6 +106,10 @@ Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::stri
   header.lines_along = loaded.job.image.lines_along;
   made.stack = stack_settings(loaded.job.image, loaded.plan);
   made.stack.samples = images.images.front().info.samples;
+  made.stack.decoder_bytes = 0;
+  for (const StackImage& image : images.images) {
+    made.stack.decoder_bytes = std::max(*made.stack.decoder_bytes, image.info.decoder_bytes);
+  }
   made.stack.random_access = std::all_of(images.images.begin(), images.images.end(),
                                          [](const StackImage& image) { return image.info.random_access; });
 
