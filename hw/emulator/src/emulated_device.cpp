@@ -107,13 +107,28 @@ void EmulatedDevice::run_line(const LineFrame& frame, bool dark) {
   }
 }
 
-Result<void> EmulatedDevice::send(const LineFrame& frame) {
+/// `what` came, and there is a line left to run.
+Result<void> EmulatedDevice::check_running(const std::string& what) {
   if (!configured_) {
     return Error{ErrorCode::device, "send: the device is not configured; call configure() first"};
   }
   if (revolution_ == setup_.revolutions) {
-    return refuse(DeviceFault::sequence, "frame of " + place_of(frame.revolution, frame.line) + ": the job of " +
-                                             std::to_string(setup_.revolutions) + " revolutions is over");
+    return refuse(DeviceFault::sequence,
+                  what + ": the job of " + std::to_string(setup_.revolutions) + " revolutions is over");
+  }
+  return {};
+}
+
+Result<void> EmulatedDevice::pass_line(DeviceFault fault, std::string detail) {
+  GRAVURE_CHECK(check_running("line without a frame"));
+  raise_fault(fault, place() + ": " + std::move(detail));
+  run_line({}, true);
+  return {};
+}
+
+Result<void> EmulatedDevice::send(const LineFrame& frame) {
+  if (!configured_ || revolution_ == setup_.revolutions) {
+    return check_running("frame of " + place_of(frame.revolution, frame.line));
   }
   if (fault_ != DeviceFault::none) {
     const std::string here = place();

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "gravure/fpga/edge_stream.hpp"
 
@@ -106,6 +108,33 @@ TEST(VcdWriter, RefusesATimeBeyondSixtyFourBits) {
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::out_of_range);
   EXPECT_TRUE(vcd.empty());
+}
+
+TEST(WaveDump, WritesVectorsAndSharesATimeBetweenSignals) {
+  auto dump = WaveDump::make({}, "machine", {{.name = "gate"}, {.name = "line", .bits = 32}});
+  ASSERT_TRUE(dump);
+  std::string vcd;
+  const std::array<std::uint64_t, 2> first = {0, 0};
+  ASSERT_TRUE(dump.value().begin(vcd, 5, first));
+  const std::size_t head = vcd.size();
+  EXPECT_NE(vcd.find("$scope module machine $end\n$var wire 1 ! gate $end\n$var wire 32 \" line $end\n"),
+            std::string::npos);
+  EXPECT_NE(vcd.find("#5\n$dumpvars\n0!\nb0 \"\n$end\n"), std::string::npos);
+  ASSERT_TRUE(dump.value().change(vcd, 5, 0, 1));
+  ASSERT_TRUE(dump.value().change(vcd, 9, 0, 0));
+  ASSERT_TRUE(dump.value().change(vcd, 9, 1, 10));
+  ASSERT_TRUE(dump.value().change(vcd, 11, 1, 10));
+  ASSERT_TRUE(dump.value().end(vcd, 12));
+  EXPECT_EQ(vcd.substr(head), "1!\n#9\n0!\nb1010 \"\n#12\n");
+}
+
+TEST(WaveDump, RefusesSignalsThatViewersCannotShow) {
+  for (const WaveSignal& signal : {WaveSignal{"", 1}, WaveSignal{"a b", 1}, WaveSignal{"a", 0}, WaveSignal{"a", 65}}) {
+    const auto dump = WaveDump::make({}, "machine", {signal});
+    ASSERT_FALSE(dump);
+    EXPECT_EQ(dump.error().code, ErrorCode::bad_argument);
+  }
+  EXPECT_FALSE(WaveDump::make({}, "machine", std::vector<WaveSignal>(WaveDump::kMaxSignals + 1, {.name = "a"})));
 }
 
 }  // namespace

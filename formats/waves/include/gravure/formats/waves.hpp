@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gravure/core/error.hpp"
+#include "gravure/formats/wave_dump.hpp"
 #include "gravure/fpga/ab_edges.hpp"
 
 namespace gravure::formats {
@@ -13,16 +14,7 @@ namespace gravure::formats {
 void append_csv_header(std::string& out);
 void append_csv_edge(std::string& out, const fpga::AbEdge& edge);
 
-/// How FPGA ticks become times of a value change dump, which knows only 1, 10 or 100 of a decimal unit. A tick whose
-/// time is no whole number of units is rounded down, and the dump's comment says so.
-struct VcdTime {
-  std::string timescale = "1 ns";  ///< 1, 10 or 100, then s, ms, us, ns, ps or fs
-  std::uint64_t units_num = 1;     ///< one tick is num / den units, >= 1
-  std::uint64_t units_den = 1;     ///< 1 <= den <= num: two ticks must not share a time
-};
-
-/// The pins A and B as a value change dump (IEEE 1364 section 18) for GTKWave and the like. Every call appends to
-/// `out`, so that the text can be written away piece by piece.
+/// The pins A and B alone as a value change dump.
 class VcdWriter {
  public:
   /// bad_argument where `time` breaks its ranges.
@@ -36,11 +28,9 @@ class VcdWriter {
   Result<void> end(std::string& out, std::uint64_t last);
 
  private:
-  explicit VcdWriter(VcdTime time) : time_(std::move(time)) {}
-  Result<void> append_time(std::string& out, std::uint64_t tick) const;
+  explicit VcdWriter(WaveDump dump) : dump_(std::move(dump)) {}
 
-  VcdTime time_;
-  fpga::AbPins pins_;
+  WaveDump dump_;
 };
 
 }  // namespace gravure::formats

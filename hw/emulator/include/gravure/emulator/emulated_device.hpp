@@ -39,9 +39,15 @@ class EmulatedDevice final : public DeviceLink {
   /// configure(), or after the last line (neither of these two takes a line time).
   Result<void> send(const LineFrame& frame) override;
 
+  /// A line time in which no frame comes: latches the fault, underrun where the host still speaks, host_silence where
+  /// it does not (the emulated watchdog waits for one line time), and runs a dark line. Fails as send() does; here only
+  /// before configure() and after the last line.
+  Result<void> pass_line(DeviceFault fault, std::string detail);
+
   /// `lines_executed` counts the lines of good frames, `tick` every line time since tick 0 of the job, dark ones too.
   DeviceStatus status() const override;
 
+  DeviceFault fault() const noexcept { return fault_; }
   /// Clears the fault; the next line may fire.
   void acknowledge();
   /// Latches a fault from outside the link: interlock, host_silence or underrun (`none` is ignored).
@@ -53,6 +59,7 @@ class EmulatedDevice final : public DeviceLink {
   std::string sequence_violation(const LineFrame& frame) const;
   std::string shape_violation(const LineFrame& frame) const;
   void run_line(const LineFrame& frame, bool dark);
+  Result<void> check_running(const std::string& what);
   std::string place() const;  ///< "revolution 1, line 2"
 
   PinObserver* observer_;

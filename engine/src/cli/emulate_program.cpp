@@ -1,0 +1,329 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "emulate.hpp"
+#include "gravure/emulator/emulated_device.hpp"
+#include "gravure/emulator/faults.hpp"
+#include "gravure/emulator/machine_waves.hpp"
+#include "gravure/formats/grv.hpp"
+#include "gravure/raster/count.hpp"
+#include "program_files.hpp"
+#include "text_output.hpp"
+
+namespace gravure::cli {
+namespace {
+
+using emulator::DarkLines;
+using emulator::FaultyHost;
+using emulator::MachineWaves;
+using emulator::PlannedFault;
+
+fpga::AbRegisters registers_of(const AbPlan& ab) {
+  return {ab.counter_bits, ab.prescaler, ab.increment, ab.fraction_num, ab.fraction_den};
+}
+
+/// The signals of the machine into a file.
+class WaveFile final : public emulator::WaveSink {
+ public:
+  static Result<std::unique_ptr<WaveFile>> create(const std::string& path, const formats::VcdTime& time) {
+    GRAVURE_TRY(formats::WaveDump dump, formats::WaveDump::make(time, "machine",
+                                                                {{.name = "a"},
+                                                                 {.name = "b"},
+                                                                 {.name = "gate"},
+                                                                 {.name = "line_start"},
+                                                                 {.name = "scanner_clock"},
+                                                                 {.name = "revolution", .bits = 32},
+                                                                 {.name = "line", .bits = 32}}));
+    GRAVURE_TRY(TextOutput output, TextOutput::create(path));
+    return std::make_unique<WaveFile>(std::move(dump), std::move(output));
+  }
+  WaveFile(formats::WaveDump dump, TextOutput output) : dump_(std::move(dump)), output_(std::move(output)) {}
+
+  bool begin(std::uint64_t first, const emulator::SignalValues& values) override {
+    return keep(dump_.begin(output_.text(), first, values));
+  }
+  bool change(std::uint64_t tick, emulator::Signal signal, std::uint64_t value) override {
+    return keep(dump_.change(output_.text(), tick, static_cast<std::size_t>(signal), value));
+  }
+  const Result<void>& written() const { return written_; }
+  Result<void> commit(std::uint64_t last) {
+    GRAVURE_CHECK(written_);
+    GRAVURE_CHECK(dump_.end(output_.text(), last));
+    return output_.commit();
+  }
+
+ private:
+  bool keep(Result<void> result) {
+    if (written_) {
+      written_ = std::move(result);
+    }
+    return written_ && output_.flush(false) && !cancel_token().cancelled();
+  }
+  formats::WaveDump dump_;
+  TextOutput output_;
+  Result<void> written_;
+};
+
+/// Counts what the pins show, and passes it on.
+class PinCounter final : public PinObserver {
+ public:
+  explicit PinCounter(MachineWaves* waves) : waves_(waves) {}
+  void on_line(const ExecutedLine& line) override {
+    fired_ += raster::popcount(line.fired);
+    if (waves_ != nullptr) {
+      waves_->on_line(line);
+    }
+  }
+  std::int64_t fired() const { return fired_; }
+
+ private:
+  MachineWaves* waves_;
+  std::int64_t fired_ = 0;
+};
+
+/// Lines counted over the whole job, both included.
+struct Lines {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+};
+
+/// Lets through the frames of some lines alone.
+class SomeLines final : public DeviceLink {
+ public:
+  SomeLines(DeviceLink& link, Lines lines, std::int64_t lines_per_revolution)
+      : link_(link), lines_(lines), lines_per_revolution_(lines_per_revolution) {}
+  Result<void> configure(const DeviceSetup& setup) override { return link_.configure(setup); }
+  Result<void> send(const LineFrame& frame) override {
+    const std::int64_t ordinal = frame.revolution * lines_per_revolution_ + frame.line;
+    return ordinal < lines_.first || ordinal > lines_.last ? Result<void>() : link_.send(frame);
+  }
+  DeviceStatus status() const override { return link_.status(); }
+
+ private:
+  DeviceLink& link_;
+  Lines lines_;
+  std::int64_t lines_per_revolution_;
+};
+
+struct Mistakes {
+  std::vector<PlannedFault> faults;
+  std::vector<std::int64_t> acknowledgements;
+};
+
+Result<Mistakes> mistakes_of(const EmulateOptions& options, const DeviceSetup& setup) {
+  const auto named = [](const char* option, Error error) {
+    error.message = std::string(option) + " " + error.message;
+    return error;
+  };
+  Mistakes mistakes;
+  for (const std::string& text : options.faults) {
+    const Result<PlannedFault> fault = emulator::parse_fault(text, setup);
+    if (!fault) {
+      return named("--fault", fault.error());
+    }
+    mistakes.faults.push_back(fault.value());
+  }
+  for (const std::string& text : options.acknowledgements) {
+    const Result<std::int64_t> place = emulator::parse_line_place(text, setup);
+    if (!place) {
+      return named("--acknowledge", place.error());
+    }
+    mistakes.acknowledgements.push_back(place.value());
+  }
+  return mistakes;
+}
+
+/// The lines a window touches, and those from the first fault on, which may reach into it.
+Lines lines_of(const Plan& plan, TickWindow window, const Mistakes& mistakes) {
+  const std::int64_t most = plan.job.revolutions * plan.rotary.lines_per_revolution - 1;
+  const auto line_at = [&](std::uint64_t tick) {
+    return std::min(static_cast<std::int64_t>(tick) / plan.line.ticks, most);
+  };
+  Lines lines{line_at(window.first), line_at(window.last)};
+  for (const PlannedFault& fault : mistakes.faults) {
+    lines.first = std::min(lines.first, fault.ordinal);
+  }
+  return lines;
+}
+
+Result<void> send_lines(LineSource& program, Lines lines, DeviceLink& device) {
+  const ProgramHeader& header = program.header();
+  const std::int64_t per_revolution = header.plan.rotary.lines_per_revolution;
+  SomeLines some(device, lines, per_revolution);
+  ProgramChunk chunk;
+  ProgressBar bar("emulate");
+  const std::int64_t first_revolution = lines.first / per_revolution;
+  const std::int64_t last_revolution = lines.last / per_revolution;
+  for (std::int64_t r = first_revolution; r <= last_revolution; ++r) {
+    const std::int64_t layer = header.layer_of_revolution[static_cast<std::size_t>(r)];
+    const std::int64_t first = r == first_revolution ? lines.first % per_revolution : 0;
+    const std::int64_t last = r == last_revolution ? lines.last % per_revolution : per_revolution - 1;
+    for (std::int64_t k = first / program.lines_per_chunk(); k <= last / program.lines_per_chunk(); ++k) {
+      if (cancel_token().cancelled()) {
+        return Error{ErrorCode::cancelled, "stopped before the end of the program"};
+      }
+      GRAVURE_CHECK(chunk.load(program, {layer, k}));
+      GRAVURE_CHECK(chunk.send(header, r, some));
+    }
+    bar.update(r + 1 - first_revolution, last_revolution + 1 - first_revolution);
+  }
+  return {};
+}
+
+std::string place_text(std::int64_t ordinal, const Plan& plan) {
+  const std::int64_t per_revolution = plan.rotary.lines_per_revolution;
+  return fmt::format("revolution {}, line {}", ordinal / per_revolution, ordinal % per_revolution);
+}
+
+Json dark_json(const std::vector<DarkLines>& dark, const Plan& plan) {
+  const std::int64_t per_revolution = plan.rotary.lines_per_revolution;
+  Json list = Json::array();
+  for (const DarkLines& lines : dark) {
+    list.push_back({{"fault", to_string(lines.fault)},
+                    {"fault_register", static_cast<int>(lines.fault)},
+                    {"tick", json_integer(Integer(lines.tick))},
+                    {"first_line", lines.first},
+                    {"last_line", lines.last},
+                    {"lines", lines.last - lines.first + 1},
+                    {"from", {{"revolution", lines.first / per_revolution}, {"line", lines.first % per_revolution}}},
+                    {"to", {{"revolution", lines.last / per_revolution}, {"line", lines.last % per_revolution}}},
+                    {"detail", lines.detail}});
+  }
+  return list;
+}
+
+/// A-B edges of the axis per workpiece revolution divide its exact position: whole turns and what is left.
+Rational turns_after(const Plan& plan, std::uint64_t tick) {
+  const fpga::AbRegisters registers = registers_of(plan.ab);
+  const fpga::AbPosition at = fpga::position_after(registers, tick);
+  const Integer counts =
+      (Integer(static_cast<std::uint64_t>(at.counts >> 64U)) << 64) + static_cast<std::uint64_t>(at.counts);
+  const Rational exact =
+      Rational(counts) + Rational(Integer(at.accumulator)) / Rational(Integer(registers.fraction_den));
+  return exact / Rational(Integer(1) << (registers.bits - 2)) / plan.rotary.edges_per_revolution;
+}
+
+struct Run {
+  TickWindow window;
+  Lines lines;
+  DeviceStatus status;
+  std::int64_t fired = 0;
+  std::vector<DarkLines> dark;
+};
+
+void print_run(const EmulateOptions& options, const Command& command, const Plan& plan, const Run& run) {
+  const DeviceStatus& status = run.status;
+  const auto end = static_cast<std::uint64_t>(status.tick);
+  const Rational turns = turns_after(plan, end);
+  std::int64_t dark_lines = 0;
+  for (const DarkLines& lines : run.dark) {
+    dark_lines += lines.last - lines.first + 1;
+  }
+  if (command.json) {
+    const fpga::AbRegisters registers = registers_of(plan.ab);
+    Json axis = axis_json(registers, end);
+    axis["workpiece_turns"] = json_ratio(turns);
+    Json result = {{"program", options.program},
+                   {"lines", status.lines_executed},
+                   {"ticks", json_integer(Integer(status.tick))},
+                   {"planned_ticks", json_integer(Integer(plan.job.ticks))},
+                   {"fired_slots", json_integer(Integer(run.fired))},
+                   {"edges", json_integer(Integer(status.axis.edges))},
+                   {"axis", axis},
+                   {"fault", to_string(status.fault)},
+                   {"fault_register", static_cast<int>(status.fault)},
+                   {"dark_lines", dark_lines},
+                   {"dark", dark_json(run.dark, plan)}};
+    if (options.from || options.to) {
+      result["window"] = {{"from", json_integer(Integer(run.window.first))},
+                          {"to", json_integer(Integer(run.window.last))},
+                          {"first_line", run.lines.first},
+                          {"last_line", run.lines.last}};
+    }
+    print_json(result);
+    return;
+  }
+  std::string text =
+      fmt::format("{} lines in {} ticks (planned {}), {} slots fired, {} A-B edges, fault: {}\n", status.lines_executed,
+                  status.tick, plan.job.ticks, run.fired, status.axis.edges, to_string(status.fault));
+  if (options.from || options.to) {
+    text += fmt::format("window: ticks {} to {}; only lines {} to {} were run, counted over the job\n",
+                        run.window.first, run.window.last, run.lines.first, run.lines.last);
+  }
+  text += fmt::format("axis: {:.9f} turns of the workpiece at tick {}, exactly {}\n", to_double(turns), status.tick,
+                      turns.str());
+  for (const DarkLines& lines : run.dark) {
+    text += fmt::format("dark from tick {} ({}) to {}: {} lines, fault register {} ({}): {}\n", lines.tick,
+                        place_text(lines.first, plan), place_text(lines.last, plan), lines.last - lines.first + 1,
+                        static_cast<int>(lines.fault), to_string(lines.fault), lines.detail);
+  }
+  print(text);
+}
+
+/// `--clocks` of a program is the length of its edges, as --to is.
+Result<TickWindow> window_of(EmulateOptions options, const Plan& plan) {
+  if (options.clocks != 0 && !options.to) {
+    options.to = options.clocks;
+  }
+  return tick_window(options, static_cast<std::uint64_t>(plan.job.ticks));
+}
+
+}  // namespace
+
+Result<int> run_program(const EmulateOptions& options, const Command& command) {
+  for (const std::string& output : {options.edges_path, options.vcd_path}) {
+    GRAVURE_CHECK(refuse_overwrite(output, {options.program}));
+  }
+  if (!options.edges_path.empty() && options.edges_path == options.vcd_path) {
+    return Error{ErrorCode::bad_argument, "--edges and --vcd both name " + options.vcd_path + ": give two files"};
+  }
+  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
+  const Plan& plan = program->header().plan;
+  const std::int64_t per_revolution = plan.rotary.lines_per_revolution;
+  Run run;
+  GRAVURE_TRY(run.window, window_of(options, plan));
+  GRAVURE_TRY(const Mistakes mistakes, mistakes_of(options, device_setup(plan, 0, 0)));
+  const std::uint64_t end = static_cast<std::uint64_t>(plan.job.ticks);
+  const bool windowed = options.from || options.to;
+  run.lines = lines_of(plan, windowed ? run.window : TickWindow{0, end}, mistakes);
+  const DeviceSetup setup = device_setup(plan, run.lines.first / per_revolution, run.lines.first % per_revolution);
+
+  std::unique_ptr<WaveFile> file;
+  std::optional<MachineWaves> waves;
+  if (!options.vcd_path.empty()) {
+    GRAVURE_TRY(const formats::VcdTime time, vcd_time(plan.clock.fpga_hz));
+    GRAVURE_TRY(file, WaveFile::create(options.vcd_path, time));
+    waves.emplace(MachineWaves::Setup{.device = setup,
+                                      .slots_per_microvector = plan.line.slots_per_microvector,
+                                      .ticks_per_seed_clock = plan.clock.fpga_hz / plan.clock.seed_hz,
+                                      .first_tick = run.window.first,
+                                      .last_tick = run.window.last},
+                  *file);
+  }
+  PinCounter pins(waves ? &*waves : nullptr);
+  emulator::EmulatedDevice device(&pins);
+  GRAVURE_TRY(FaultyHost host, FaultyHost::make(device, mistakes.faults, mistakes.acknowledgements));
+  GRAVURE_CHECK(host.configure(setup));
+  GRAVURE_CHECK(send_lines(*program, run.lines, host));
+  if (file) {
+    waves->finish();
+    if (cancel_token().cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped; nothing was written"};
+    }
+    GRAVURE_CHECK(file->commit(run.window.last));
+  }
+  if (!options.edges_path.empty()) {
+    GRAVURE_TRY([[maybe_unused]] const std::uint64_t edges,
+                write_csv_edges(options.edges_path, registers_of(plan.ab), run.window));
+  }
+  run.status = host.status();
+  run.fired = pins.fired();
+  run.dark = host.dark();
+  print_run(options, command, plan, run);
+  return run.dark.empty() && run.status.tick == (run.lines.last + 1) * plan.line.ticks ? kDone : kLimitViolated;
+}
+
+}  // namespace gravure::cli

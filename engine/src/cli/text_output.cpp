@@ -1,0 +1,34 @@
+#include "text_output.hpp"
+
+#include <utility>
+
+namespace gravure::cli {
+
+Result<TextOutput> TextOutput::create(const std::string& path) {
+  GRAVURE_TRY(FileOutput output, FileOutput::create(path));
+  std::FILE* file = std::fopen(output.temporary_path().c_str(), "w");
+  if (file == nullptr) {
+    return Error{ErrorCode::io, path + ": cannot open the output"};
+  }
+  return TextOutput(std::move(output), file);
+}
+
+bool TextOutput::flush(bool all) {
+  constexpr std::size_t kPiece = std::size_t{1} << 18;
+  if (text_.size() >= kPiece || all) {
+    good_ = std::fwrite(text_.data(), 1, text_.size(), file_.get()) == text_.size() && good_;
+    text_.clear();
+  }
+  return good_;
+}
+
+Result<void> TextOutput::commit() {
+  flush(true);
+  good_ = std::fclose(file_.release()) == 0 && good_;
+  if (!good_) {
+    return Error{ErrorCode::io, output_.path() + ": cannot write: is the disk full?"};
+  }
+  return output_.commit();
+}
+
+}  // namespace gravure::cli

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "gravure/core/error.hpp"
+#include "gravure/core/file_output.hpp"
+
+namespace gravure::cli {
+
+/// A text file written piece by piece, whole or not at all.
+class TextOutput {
+ public:
+  static Result<TextOutput> create(const std::string& path);
+  std::string& text() { return text_; }
+  /// Writes away what has gathered, when it is worth it; false once a write has failed.
+  bool flush(bool all);
+  Result<void> commit();
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
+  };
+  TextOutput(FileOutput output, std::FILE* file) : output_(std::move(output)), file_(file) {}
+  FileOutput output_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::string text_;
+  bool good_ = true;
+};
+
+}  // namespace gravure::cli
