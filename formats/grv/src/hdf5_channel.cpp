@@ -41,7 +41,7 @@ void Hdf5Channel::resize(std::uint64_t bytes) noexcept {
   }
 }
 
-void Hdf5Channel::settle(Result<void> done) noexcept {
+void Hdf5Channel::settle(const Result<void>& done) noexcept {
   if (!done) {
     failure_ = done.error();
     abandoned_ = true;

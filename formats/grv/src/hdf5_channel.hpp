@@ -38,7 +38,7 @@ class Hdf5Channel {
   void resize(std::uint64_t bytes) noexcept;
 
  private:
-  void settle(Result<void> done) noexcept;
+  void settle(const Result<void>& done) noexcept;
   std::unique_ptr<ByteFile> file_;
   const void* watched_ = nullptr;
   std::optional<std::uint64_t> watched_offset_;
