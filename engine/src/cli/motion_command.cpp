@@ -80,6 +80,7 @@ struct RespondOptions {
   OutputOptions output;
   bool quantised = false;
   double delay_us = 0;
+  std::optional<double> until_ms;  ///< of CSV and figure
 };
 
 Result<std::vector<motion::InputJump>> respond_input(const RespondOptions& options) {
@@ -94,6 +95,37 @@ Result<std::vector<motion::InputJump>> respond_input(const RespondOptions& optio
   return motion::delayed(std::move(input), options.delay_us * 1e-6);
 }
 
+/// CSV and figure of what is carried, a little beyond the positioning time unless told otherwise.
+Result<void> write_response(const RespondOptions& options, const std::vector<motion::Mode>& modes,
+                            const std::vector<motion::InputJump>& input, const formats::Response& response) {
+  const motion::Settling& settling = response.settling;
+  const double until_s = options.until_ms
+                             ? *options.until_ms * 1e-3
+                             : 1.5 * std::min(settling.positioning_time_s, 4 * settling.access_time_s) + 1e-6;
+  if (!(until_s > 0 && until_s <= 1e9)) {
+    return Error{ErrorCode::out_of_range, fmt::format("--until-ms {}: must be above 0, to 1e12", until_s * 1e3)};
+  }
+  std::vector<formats::Curve> curves(2);
+  curves[0].name = "carried acceleration mm/s^2";
+  curves[1].name = "deviation mm";
+  curves[response.band.of == motion::BandOf::acceleration ? 0 : 1].band = response.band.tolerance;
+  std::string csv = "time_s,acceleration_mm_s2,deviation_mm\n";
+  constexpr int kPoints = 2000;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double time_s = until_s * i / kPoints;
+    const motion::CarriedState state = motion::carried_at(modes, input, time_s);
+    csv += fmt::format("{},{},{}\n", time_s, state.acceleration_mm_s2, state.deviation_mm);
+    for (std::size_t c = 0; c < 2; ++c) {
+      curves[c].x.push_back(time_s * 1e3);
+      curves[c].y.push_back(c == 0 ? state.acceleration_mm_s2 : state.deviation_mm);
+    }
+  }
+  for (formats::Curve& curve : curves) {
+    curve.marks = {settling.access_time_s * 1e3, settling.positioning_time_s * 1e3};
+  }
+  return write_outputs(options.output, csv, "Residual vibration", "ms", curves);
+}
+
 Result<int> run_respond(const RespondOptions& options, bool json) {
   GRAVURE_TRY(const std::vector<motion::Mode> modes, modes_of(options.modes));
   GRAVURE_TRY(const motion::Band band, band_of(options.modes));
@@ -103,20 +135,7 @@ Result<int> run_respond(const RespondOptions& options, bool json) {
   const formats::Response response{
       modes, band, settling, residual, options.quantised ? options.move.update_us : 0, options.delay_us * 1e-6};
   if (!options.output.csv.empty() || !options.output.plot.empty()) {
-    const double until_s = 1.5 * std::min(settling.positioning_time_s, 4 * settling.access_time_s) + 1e-6;
-    std::vector<formats::Curve> curves{{"carried acceleration mm/s^2", {}, {}}, {"deviation mm", {}, {}}};
-    std::string csv = "time_s,acceleration_mm_s2,deviation_mm\n";
-    constexpr int kPoints = 2000;
-    for (int i = 0; i <= kPoints; ++i) {
-      const double time_s = until_s * i / kPoints;
-      const motion::CarriedState state = motion::carried_at(modes, input, time_s);
-      csv += fmt::format("{},{},{}\n", time_s, state.acceleration_mm_s2, state.deviation_mm);
-      for (std::size_t c = 0; c < 2; ++c) {
-        curves[c].x.push_back(time_s * 1e3);
-        curves[c].y.push_back(c == 0 ? state.acceleration_mm_s2 : state.deviation_mm);
-      }
-    }
-    GRAVURE_CHECK(write_outputs(options.output, csv, "Residual vibration", "ms", curves));
+    GRAVURE_CHECK(write_response(options, modes, input, response));
   }
   print(json ? formats::response_to_json(response)
              : fmt::format("access time       {:.6f} ms\npositioning time  {:.6f} ms\nresidual after    {:.6f} ms\n"
@@ -133,6 +152,7 @@ void add_respond(CLI::App& parent, Command& command) {
   add_mode_options(*verb, options->modes);
   verb->add_flag("--quantised", options->quantised, "As a servo makes it that takes one set-point an update");
   verb->add_option("--delay-us", options->delay_us, "Dead time before the axis moves")->capture_default_str();
+  verb->add_option("--until-ms", options->until_ms, "End of the CSV and the figure (beyond the positioning time)");
   add_output_options(*verb, options->output);
   verb->callback(
       [&command, options] { command.run = [&command, options] { return run_respond(*options, command.json); }; });

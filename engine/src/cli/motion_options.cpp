@@ -101,6 +101,7 @@ Result<motion::Band> band_of(const ModeOptions& options) {
 void add_output_options(CLI::App& verb, OutputOptions& options) {
   verb.add_option("--csv", options.csv, "Write samples to this file");
   verb.add_option("--plot", options.plot, "Write a figure (SVG) to this file");
+  verb.add_option("--plot-title", options.plot_title, "Title of the figure");
 }
 
 Result<void> write_outputs(const OutputOptions& options, const std::string& csv, const std::string& title,
@@ -109,7 +110,8 @@ Result<void> write_outputs(const OutputOptions& options, const std::string& csv,
     GRAVURE_CHECK(write_file(options.csv, csv));
   }
   if (!options.plot.empty()) {
-    GRAVURE_CHECK(write_file(options.plot, formats::curves_to_svg(title, x_name, curves)));
+    GRAVURE_CHECK(write_file(
+        options.plot, formats::curves_to_svg(options.plot_title.empty() ? title : options.plot_title, x_name, curves)));
   }
   return {};
 }

@@ -46,6 +46,7 @@ Result<motion::Band> band_of(const ModeOptions& options);
 struct OutputOptions {
   std::string csv;
   std::string plot;
+  std::string plot_title;  ///< in place of the verb's own
 };
 
 void add_output_options(CLI::App& verb, OutputOptions& options);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "gravure/formats/motion_json.hpp"
 
@@ -32,18 +33,71 @@ Range range_of(const std::vector<double>& values) {
   return *high > *low ? Range{*low, *high} : Range{*low - 0.5, *low + 0.5};
 }
 
+/// The curve in pixels, without points that a straight line passes within a tenth of a pixel.
+std::string polyline(const Curve& curve, const Range& x, const Range& y, double top, double height) {
+  constexpr double kOff = 0.1;
+  const auto at = [&](std::size_t i) {
+    return std::pair(kLeft + x.share(curve.x[i]) * (kWidth - kLeft - 10), top + height - y.share(curve.y[i]) * height);
+  };
+  auto kept = at(0);
+  auto before = kept;
+  std::string points = fmt::format("{:.1f},{:.1f} ", kept.first, kept.second);
+  // Slopes of lines from the kept point that pass near enough to all points since.
+  double least = -1e9;
+  double most = 1e9;
+  for (std::size_t i = 1; i < curve.x.size(); ++i) {
+    const auto here = at(i);
+    const double slope = (here.second - kept.second) / (here.first - kept.first);
+    if (i > 1 && !(slope >= least && slope <= most)) {
+      kept = before;
+      points += fmt::format("{:.1f},{:.1f} ", kept.first, kept.second);
+      least = -1e9;
+      most = 1e9;
+    }
+    const double length = here.first - kept.first;
+    if (length > 0) {
+      least = std::max(least, (here.second - kOff - kept.second) / length);
+      most = std::min(most, (here.second + kOff - kept.second) / length);
+    }
+    before = here;
+  }
+  return points + fmt::format("{:.1f},{:.1f}", before.first, before.second);
+}
+
+std::string dashed_line(double x1, double y1, double x2, double y2) {
+  return fmt::format(
+      "<line x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" stroke=\"#c33\" stroke-dasharray=\"4 3\"/>\n", x1,
+      y1, x2, y2);
+}
+
+/// The dashed lines of a curve that lie inside its panel.
+std::string dashed_lines(const Curve& curve, const Range& x, const Range& y, double top, double height) {
+  const double right = kWidth - 10;
+  std::string svg;
+  for (const double level : {curve.band, -curve.band}) {
+    if (curve.band > 0 && y.share(level) > 0 && y.share(level) < 1) {
+      const double at = top + height - y.share(level) * height;
+      svg += dashed_line(kLeft, at, right, at);
+    }
+  }
+  for (const double mark : curve.marks) {
+    if (x.share(mark) > 0 && x.share(mark) < 1) {
+      const double at = kLeft + x.share(mark) * (right - kLeft);
+      svg += dashed_line(at, top, at, top + height);
+    }
+  }
+  return svg;
+}
+
 std::string panel(const Curve& curve, const Range& x, double top) {
   const Range y = range_of(curve.y);
   const double height = kPanel - 30;
-  std::string points;
-  for (std::size_t i = 0; i < curve.x.size(); ++i) {
-    points += fmt::format("{:.2f},{:.2f} ", kLeft + x.share(curve.x[i]) * (kWidth - kLeft - 10),
-                          top + height - y.share(curve.y[i]) * height);
-  }
+  const std::string points = polyline(curve, x, y, top, height);
   std::string svg = fmt::format(
       "<rect x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" fill=\"none\" stroke=\"#999\"/>\n"
       "<polyline points=\"{4}\" fill=\"none\" stroke=\"#1f5fa8\" stroke-width=\"1.2\"/>\n",
       kLeft, top, kWidth - kLeft - 10, height, points);
+  svg += dashed_lines(curve, x, y, top, height);
   svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n", kLeft - 4, top + 10, y.high);
   svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.4g}</text>\n", kLeft - 4, top + height, y.low);
   svg += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", kLeft + 6, top + 14, escaped(curve.name));

@@ -83,6 +83,13 @@ TEST(MotionText, WritesSamplesAndFigures) {
   const std::string svg = curves_to_svg("a < b", "ms", {{"x", {0, 1}, {2, 2}}, {"left out", {0}, {1}}});
   EXPECT_NE(svg.find("a &lt; b"), std::string::npos);
   EXPECT_EQ(svg.find("left out"), std::string::npos);
+  EXPECT_EQ(svg.find("dasharray"), std::string::npos);
+  const std::string marked = curves_to_svg("", "ms", {{"x", {0, 1}, {-2, 2}, 1, {0.5, 7}}});
+  std::size_t lines = 0;
+  for (std::size_t at = 0; (at = marked.find("dasharray", at)) != std::string::npos; ++at) {
+    ++lines;
+  }
+  EXPECT_EQ(lines, 3U);  // the band on both sides, one mark; the other lies outside
   EXPECT_NE(svg.find("</svg>"), std::string::npos);
 }
 

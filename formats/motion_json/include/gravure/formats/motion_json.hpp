@@ -68,6 +68,8 @@ struct Curve {
   std::string name;
   std::vector<double> x;
   std::vector<double> y;
+  double band = 0;              ///< > 0: dashed lines at +-band
+  std::vector<double> marks{};  ///< of x: dashed lines upright
 };
 
 /// A stand-alone SVG: curves over a common x axis, each in a panel of its own with its range at the side. Curves of
