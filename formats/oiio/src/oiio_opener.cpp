@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "gravure/formats/image_kind.hpp"
@@ -195,6 +196,8 @@ Result<std::int64_t> OiioOpener::count_unguarded(const std::string& path) const 
 Result<std::unique_ptr<ImageSource>> OiioOpener::open(const std::string& path, std::int64_t page) const {
   try {
     return open_unguarded(path, page);
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::io, place(path, page) + ": out of memory while opening: lower --memory or --threads"};
   } catch (const std::exception& failure) {
     return bad_file(place(path, page), std::string("cannot be read: ") + failure.what());
   }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "pack_bits.hpp"
@@ -71,6 +72,8 @@ Result<void> OiioSource::read_rows(std::int64_t first_row, std::int64_t row_coun
   }
   try {
     return read_unguarded(first_row, row_count, out.data());
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::io, place() + "out of memory while reading: lower --memory or --threads"};
   } catch (const std::exception& failure) {
     return Error{ErrorCode::bad_file, place() + "cannot be read: " + failure.what()};
   }

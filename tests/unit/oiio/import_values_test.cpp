@@ -191,5 +191,29 @@ TEST(ImportedValues, ThatAreNoNumbersAreRefusedWithTheirPlace) {
   }
 }
 
+/// A crop that kept its place: data and display window agree, but do not begin at 0.
+TEST(ImportedValues, AreThoseOfAnOpenExrWhoseWindowDoesNotBeginAt0) {
+  const TempFolder folder;
+  const std::string path = folder / "crop.exr";
+  for (const int tile : {0, 16}) {
+    OIIO::ImageSpec spec(40, 24, 1, OIIO::TypeFloat);
+    spec.x = spec.full_x = 7;
+    spec.y = spec.full_y = -5;
+    spec.full_width = spec.width;
+    spec.full_height = spec.height;
+    spec.tile_width = spec.tile_height = tile;
+    spec.channelnames = {"Y"};
+    std::vector<float> values(40 * 24);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = static_cast<float>(i);
+    }
+    const auto output = OIIO::ImageOutput::create("openexr");
+    ASSERT_TRUE(output->open(path, spec)) << output->geterror();
+    ASSERT_TRUE(output->write_image(OIIO::TypeFloat, values.data())) << output->geterror();
+    output->close();
+    EXPECT_EQ(read_samples<float>(path, SampleType::f32), values) << "tiles of " << tile;
+  }
+}
+
 }  // namespace
 }  // namespace gravure::test
