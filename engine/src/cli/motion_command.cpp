@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "gravure/motion/search.hpp"
+#include "gravure/motion/shaper.hpp"
 #include "motion_options.hpp"
 
 namespace gravure::cli {
@@ -16,8 +17,20 @@ using motion::Profile;
 /// Update time of the samples that are written; plots take at most a few thousand.
 struct ProfileOptions {
   MoveOptions move;
+  std::optional<double> target_velocity;
   OutputOptions output;
 };
+
+/// To a target that stands, or to one that moves.
+Result<Profile> plan_to_target(const ProfileOptions& options) {
+  if (!options.target_velocity) {
+    return plan_move(options.move);
+  }
+  if (!options.move.jerk_up) {
+    return Error{ErrorCode::bad_argument, "--target-velocity: needs jerk limits (--jerk-up), not an S factor"};
+  }
+  return motion::plan_rendezvous(jerk_request_of(options.move), *options.target_velocity);
+}
 
 std::string profile_text(const Profile& profile) {
   std::string text = fmt::format("access time   {:.6f} ms\n", profile.access_time_s() * 1e3);
@@ -54,7 +67,7 @@ std::vector<formats::Curve> profile_curves(const Profile& profile, int points) {
 }
 
 Result<int> run_profile(const ProfileOptions& options, bool json) {
-  GRAVURE_TRY(const Profile profile, plan_move(options.move));
+  GRAVURE_TRY(const Profile profile, plan_to_target(options));
   std::string csv;
   if (!options.output.csv.empty()) {
     GRAVURE_TRY(const auto samples, motion::sample_profile(profile, options.move.update_us));
@@ -69,6 +82,8 @@ void add_profile(CLI::App& parent, Command& command) {
   CLI::App* verb = add_verb(parent, command, "profile", "Plan a jerk-limited move");
   const auto options = std::make_shared<ProfileOptions>();
   add_move_options(*verb, options->move, true);
+  verb->add_option("--target-velocity", options->target_velocity,
+                   "The target moves at this velocity in mm/s; the stroke is its distance at the start");
   add_output_options(*verb, options->output);
   verb->callback(
       [&command, options] { command.run = [&command, options] { return run_profile(*options, command.json); }; });
@@ -81,9 +96,11 @@ struct RespondOptions {
   bool quantised = false;
   double delay_us = 0;
   std::optional<double> until_ms;  ///< of CSV and figure
+  std::string shaper;
 };
 
-Result<std::vector<motion::InputJump>> respond_input(const RespondOptions& options) {
+Result<std::vector<motion::InputJump>> respond_input(const RespondOptions& options,
+                                                     const std::vector<motion::Mode>& modes) {
   GRAVURE_TRY(const Profile profile, plan_move(options.move));
   std::vector<motion::InputJump> input = motion::input_of(profile);
   if (options.quantised) {
@@ -91,6 +108,11 @@ Result<std::vector<motion::InputJump>> respond_input(const RespondOptions& optio
   }
   if (!(options.delay_us >= 0 && options.delay_us <= 1e9)) {
     return Error{ErrorCode::out_of_range, fmt::format("--delay-us {}: must be from 0 to 1e9", options.delay_us)};
+  }
+  if (!options.shaper.empty()) {
+    const auto kind = options.shaper == "zv" ? motion::ShaperKind::zv : motion::ShaperKind::zvd;
+    GRAVURE_TRY(const auto shaper, motion::make_shaper(kind, modes));
+    input = motion::shape_input(input, shaper);
   }
   return motion::delayed(std::move(input), options.delay_us * 1e-6);
 }
@@ -129,7 +151,7 @@ Result<void> write_response(const RespondOptions& options, const std::vector<mot
 Result<int> run_respond(const RespondOptions& options, bool json) {
   GRAVURE_TRY(const std::vector<motion::Mode> modes, modes_of(options.modes));
   GRAVURE_TRY(const motion::Band band, band_of(options.modes));
-  GRAVURE_TRY(const auto input, respond_input(options));
+  GRAVURE_TRY(const auto input, respond_input(options, modes));
   GRAVURE_TRY(const motion::Settling settling, motion::settle(modes, input, band));
   const double residual = motion::residual_of(modes, input, band.of).envelope(0);
   const formats::Response response{
@@ -151,6 +173,8 @@ void add_respond(CLI::App& parent, Command& command) {
   add_move_options(*verb, options->move, true);
   add_mode_options(*verb, options->modes);
   verb->add_flag("--quantised", options->quantised, "As a servo makes it that takes one set-point an update");
+  verb->add_option("--shaper", options->shaper, "Run the move through an input shaper for these modes: zv or zvd")
+      ->check(CLI::IsMember({"zv", "zvd"}));
   verb->add_option("--delay-us", options->delay_us, "Dead time before the axis moves")->capture_default_str();
   verb->add_option("--until-ms", options->until_ms, "End of the CSV and the figure (beyond the positioning time)");
   add_output_options(*verb, options->output);
@@ -169,12 +193,17 @@ struct SearchVerbOptions {
   std::uint32_t effort = 1;
 };
 
+/// Envelope when the input ends; what is left of a shaped one is rounding.
+std::string residual_text(double residual) {
+  return residual < 1e-8 ? "< 1e-8" : fmt::format("{:.4g}", residual);
+}
+
 std::string search_text(const motion::SearchReport& report, double error_percent) {
-  std::string text = fmt::format("{:<16} {:>12} {:>12} {:>14}  {}\n", "", "access ms", "settled ms",
-                                 fmt::format("+-{} % ms", error_percent), "v mm/s, a up, a down mm/s^2, S");
+  std::string text = fmt::format("{:<16} {:>12} {:>12} {:>14} {:>12}  {}\n", "", "access ms", "settled ms",
+                                 fmt::format("+-{} % ms", error_percent), "residual", "v mm/s, a up, a down mm/s^2, S");
   for (const motion::Alternative& row : report.alternatives) {
-    text += fmt::format("{:<16} {:>12.4f} {:>12.4f} {:>14.4f}", row.name, row.access_time_s * 1e3,
-                        row.positioning_time_s * 1e3, row.worst_positioning_time_s * 1e3);
+    text += fmt::format("{:<16} {:>12.4f} {:>12.4f} {:>14.4f} {:>12}", row.name, row.access_time_s * 1e3,
+                        row.positioning_time_s * 1e3, row.worst_positioning_time_s * 1e3, residual_text(row.residual));
     if (row.profile) {
       text += fmt::format("  {:.4f}, {:.2f}, {:.2f}, {:.4f}", row.profile->v_mm_s, row.profile->a_up_mm_s2,
                           row.profile->a_down_mm_s2, row.profile->s_factor);
@@ -190,9 +219,9 @@ std::string search_csv(const motion::SearchReport& report) {
       "factor\n";
   for (const motion::Alternative& row : report.alternatives) {
     const motion::Candidate c = row.profile.value_or(motion::Candidate{});
-    csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", row.name, row.access_time_s, row.positioning_time_s,
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", row.name, row.access_time_s, row.positioning_time_s,
                        row.worst_positioning_time_s, row.envelope_time_s, c.v_mm_s, c.a_up_mm_s2, c.a_down_mm_s2,
-                       c.s_factor);
+                       c.s_factor, row.residual);
   }
   return csv;
 }

@@ -27,6 +27,11 @@ Result<std::vector<double>> numbers_of(const std::string& text) {
   }
 }
 
+motion::Move move_of(const MoveOptions& options) {
+  return {options.stroke_mm,      options.v_max,       options.a_up, options.a_down.value_or(options.a_up),
+          options.start_velocity, options.end_velocity};
+}
+
 }  // namespace
 
 void add_move_options(CLI::App& verb, MoveOptions& options, bool required) {
@@ -44,15 +49,17 @@ void add_move_options(CLI::App& verb, MoveOptions& options, bool required) {
   verb.add_option("--end-velocity", options.end_velocity, "Velocity at the target in mm/s")->capture_default_str();
 }
 
+motion::JerkRequest jerk_request_of(const MoveOptions& options) {
+  const double jerk_up = options.jerk_up.value_or(0);
+  return {move_of(options), jerk_up, options.jerk_down.value_or(jerk_up)};
+}
+
 Result<motion::Profile> plan_move(const MoveOptions& options) {
-  const motion::Move move{options.stroke_mm,      options.v_max,
-                          options.a_up,           options.a_down.value_or(options.a_up),
-                          options.start_velocity, options.end_velocity};
   if (options.jerk_up) {
-    return motion::plan_profile(
-        motion::JerkRequest{move, *options.jerk_up, options.jerk_down.value_or(*options.jerk_up)});
+    return motion::plan_profile(jerk_request_of(options));
   }
-  return motion::plan_profile(motion::SFactorRequest{move, options.s_factor.value_or(0), options.update_us});
+  return motion::plan_profile(
+      motion::SFactorRequest{move_of(options), options.s_factor.value_or(0), options.update_us});
 }
 
 void add_mode_options(CLI::App& verb, ModeOptions& options) {

@@ -27,6 +27,8 @@ struct MoveOptions {
 
 /// `required`: stroke, velocity and acceleration have to be there.
 void add_move_options(CLI::App& verb, MoveOptions& options, bool required);
+/// With the jerk limits, which must be there.
+motion::JerkRequest jerk_request_of(const MoveOptions& options);
 /// S factor or jerk limits, never both; S factor 0 (the trapezoid) when neither is given.
 Result<motion::Profile> plan_move(const MoveOptions& options);
 

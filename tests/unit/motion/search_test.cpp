@@ -165,6 +165,11 @@ TEST(Search, BeatsBothGridsAndTheReportIsConsistent) {
       EXPECT_TRUE(row.profile.has_value());
     }
     EXPECT_NE(report.verdict.find(report.shortest), std::string::npos);
+    const auto gains = report.verdict.find("Gain of best_asymmetric");
+    ASSERT_NE(gains, std::string::npos);
+    for (const char* other : {"fastest", "best_symmetric", "zv", "zvd"}) {
+      EXPECT_NE(report.verdict.find(other, gains), std::string::npos) << other;
+    }
     std::cout << report.verdict << " (" << report.evaluated << " evaluated)\n";
   }
 }
