@@ -124,8 +124,14 @@ herr_t driver_read(H5FD_t* file, H5FD_mem_t type, hid_t /*transfer*/, haddr_t ad
   if (!inside(address, bytes) || !channel.read(address, buffer, bytes)) {
     return -1;
   }
-  const bool heap = opened(file).reading && type == H5FD_MEM_LHEAP;
-  return !heap || heap_is_sound(channel.file(), {static_cast<const std::byte*>(buffer), bytes}) ? 0 : -1;
+  if (!opened(file).reading || type != H5FD_MEM_LHEAP) {
+    return 0;
+  }
+  try {
+    return heap_is_sound(channel.file(), {static_cast<const std::byte*>(buffer), bytes}) ? 0 : -1;
+  } catch (const std::bad_alloc&) {  // C code is above
+    return -1;
+  }
 }
 
 herr_t driver_write(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address, std::size_t bytes,

@@ -39,7 +39,7 @@ bool chain_is_sound(const ByteFile& file, std::uint64_t names_at, std::uint64_t 
 
 }  // namespace
 
-bool heap_is_sound(const ByteFile& file, std::span<const std::byte> bytes) noexcept {
+bool heap_is_sound(const ByteFile& file, std::span<const std::byte> bytes) {
   if (bytes.size() < kPrefixBytes || std::memcmp(bytes.data(), "HEAP", 4) != 0) {
     return true;
   }
