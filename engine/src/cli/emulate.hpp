@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gravure/formats/wave_dump.hpp"
+#include "gravure/formats/waves_dump.hpp"
 #include "gravure/fpga/ab_edges.hpp"
 #include "verb.hpp"
 

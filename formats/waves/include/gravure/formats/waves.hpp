@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "gravure/core/error.hpp"
-#include "gravure/formats/wave_dump.hpp"
+#include "gravure/formats/waves_dump.hpp"
 #include "gravure/fpga/ab_edges.hpp"
 
 namespace gravure::formats {

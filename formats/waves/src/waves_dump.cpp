@@ -1,4 +1,4 @@
-#include "gravure/formats/wave_dump.hpp"
+#include "gravure/formats/waves_dump.hpp"
 
 #include <algorithm>
 #include <array>
