@@ -74,7 +74,10 @@ std::string_view foreign(std::string_view line, const std::vector<Word>& words, 
     return line.substr(formula, 1);
   }
   for (const Word& word : words) {
-    if (word.letter == 'O' || (word.letter == 'G' && !plain_code(word.value, turned))) {
+    const bool axis = kLetters.find(word.letter) != std::string_view::npos;
+    const bool again = axis && std::count_if(words.begin(), words.end(),
+                                             [&word](const Word& other) { return other.letter == word.letter; }) > 1;
+    if (again || word.letter == 'O' || (word.letter == 'G' && !plain_code(word.value, turned))) {
       return line.substr(word.begin, word.end - word.begin);
     }
   }

@@ -117,10 +117,37 @@ TEST(RotaryRewrite, ComputesMovesOfXyzAnewThatFollowATurn) {
   EXPECT_NEAR(std::stod(last.substr(last.find('Z') + 1)), axes.z_mm, 1e-6);
 }
 
+// Any text: refused, or given back byte for byte where nothing turns.
+TEST(RotaryRewrite, GivesBackAnyTextItReads) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed() + 1);
+  const std::vector<std::string> pieces{"X",  "Y-1.5", "Z.5", "A10",  "C-370", " a ",  "c+5", "G1",  "(",
+                                        ")",  ";",     "\n",  "\r\n", "F1",    "N7",   "G20", "#1",  "X1e3",
+                                        "\t", "%",     "",    "M428", "Ann",   "C1C2", "--",  "O<x>"};
+  int read = 0;
+  for (int trial = 0; trial < 20'000; ++trial) {
+    std::string program;
+    for (double k = random.between(0, 14); k > 0; --k) {
+      program += pieces[static_cast<std::size_t>(random.uniform() * static_cast<double>(pieces.size()))];
+    }
+    const auto path = parse_rotary_program(program);
+    if (!path) {
+      continue;
+    }
+    const auto rewritten =
+        rewrite_rotary_program({program, path.value().a_deg, path.value().c_deg, ProgramFrame::workpiece, 0, {}});
+    if (rewritten) {
+      ASSERT_EQ(rewritten.value().program, program);
+      ++read;
+    }
+  }
+  EXPECT_GT(read, 2000);
+}
+
 TEST(RotaryRewrite, RefusesByLineWhatItCannotWriteAnew) {
   const std::vector<double> one{1};
   for (const char* line : {"G2 X1 Y1 I1 J0", "G91", "G20", "G92 X0", "G81 Z-1 R1", "#1=5", "o<sub> call", "O100 sub",
-                           "G1 X[1+2]", "G28", "G55"}) {
+                           "G1 X[1+2]", "G28", "G55", "G1 X1 X2"}) {
     const std::string program = "G1 X0 Y0 Z0 A0 C0\n" + std::string(line) + "\n";
     const auto refused = rewrite_rotary_program({program, one, one, ProgramFrame::workpiece, 0, {}});
     ASSERT_FALSE(refused) << line;
