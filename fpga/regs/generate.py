@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the register map of host, board and documentation from registers.txt.
+"""Makes the register map of host, board and documentation from registers.txt and blocks.txt.
 
-usage: generate.py            writes the three files
+usage: generate.py            writes the four files
        generate.py --check    writes nothing; exit status 1 and the file's name where one is stale"""
 
 import pathlib
@@ -36,13 +36,41 @@ def read_registers():
     return registers
 
 
+def read_blocks():
+    blocks = []
+    for line in (HERE / "blocks.txt").read_text().splitlines():
+        if line.strip() and not line.startswith("#"):
+            name, kind, version, size, meaning = [cell.strip() for cell in line.split("|")]
+            blocks.append((name, int(kind) << 24 | int(version) << 16 | int(size), int(size), meaning))
+    return blocks
+
+
+def not_zero(registers):
+    """Those of one word whose range begins with 1 and whose writes the register file itself checks."""
+    return [r for r in registers if r["range"].startswith("1..") and r["access"] == "rw" and r["bits"] <= 32
+            and not r["name"].startswith("prescaler")]
+
+
+def words_by_width(registers):
+    """(bits, addresses as (register, word)) of the words that do not use all of their 32 bits."""
+    widths = {}
+    for r in registers:
+        if r["access"] == "ro":
+            continue
+        for word in range((r["bits"] + 31) // 32):
+            bits = min(32, r["bits"] - 32 * word)
+            if bits < 32:
+                widths.setdefault(bits, []).append((r, word))
+    return sorted(widths.items())
+
+
 def camel(name):
     return "k" + "".join(word.capitalize() for word in name.split("_"))
 
 
-def make_header(registers):
+def make_header(registers, blocks):
     text = ["#pragma once", "", "// clang-format off", "// Made by fpga/regs/generate.py from registers.txt; change that file.", "",
-            "#include <cstdint>", "#include <string_view>", "", "namespace gravure::fpga {", "",
+            "#include <array>", "#include <cstdint>", "#include <string_view>", "", "namespace gravure::fpga {", "",
             "enum class RegisterAccess : std::uint8_t { read_only, read_write, write_only };", "",
             "/// One register of the board; docs/registers.md explains them.", "struct Register {",
             "  std::string_view name;", "  std::uint64_t reset;", "  int bits;",
@@ -53,6 +81,17 @@ def make_header(registers):
                  f"{r['bits']}, {r['address']:#04x}, RegisterAccess::{access[r['access']]}}};"]
     text += ["", "inline constexpr Register kRegisters[] = {"]
     text += [f"    {camel(r['name'])}Register," for r in registers]
+    text += ["};", "", "/// Registers whose range begins with 1: the board refuses a 0.",
+             f"inline constexpr std::array<std::uint8_t, {len(not_zero(registers))}> kNotZeroAddresses{{"]
+    text += [f"    {camel(r['name'])}Register.address," for r in not_zero(registers)]
+    text += ["};", "", "/// The bits of the word at `address` that no register has: the board refuses a write that sets one.",
+             "constexpr std::uint32_t unused_bits(unsigned address) noexcept {", "  switch (address) {"]
+    for bits, words in words_by_width(registers):
+        text += [f"    case {camel(r['name'])}Register.address" + (f" + {word}" if word else "") + ":" for r, word in words]
+        text += [f"      return {(1 << 32) - (1 << bits):#x};"]
+    text += ["    default:", "      return 0;", "  }", "}", "", "/// The descriptor ROM from address 0x80 on: kind << 24 | version << 16 | size.",
+             f"inline constexpr std::array<std::uint32_t, {len(blocks)}> kDescriptors{{"]
+    text += [f"    {word:#010x},  // {name}: {size} {meaning}" for name, word, size, meaning in blocks]
     return "\n".join(text + ["};", "", "}  // namespace gravure::fpga"]) + "\n"
 
 
@@ -62,27 +101,50 @@ def make_verilog(registers):
         name = r["name"].upper()
         text += [f"localparam [7:0] ADDRESS_{name} = 8'h{r['address']:02x};",
                  f"localparam [{r['bits'] - 1}:0] RESET_{name} = {r['bits']}'h{r['reset']:x};"]
+    text += ["// The bits of a word that no register has. (No case: it would become a memory.)",
+             "function [31:0] unused_bits(input [7:0] at);", "  unused_bits = 32'd0"]
+    for bits, words in words_by_width(registers):
+        names = [f"at == ADDRESS_{r['name'].upper()}" + (f" + 8'd{word}" if word else "") for r, word in words]
+        text += ["      | {32{" + " ||\n             ".join(names) + f"}}}} & 32'h{(1 << 32) - (1 << bits):08x}"]
+    text[-1] += ";"
+    text += ["endfunction", "// Of these the register file refuses a 0.", "function refuses_zero(input [7:0] at);",
+             "  refuses_zero = " + " ||\n      ".join("at == ADDRESS_" + r["name"].upper() for r in not_zero(registers)) + ";",
+             "endfunction"]
     return "\n".join(text) + "\n"
 
 
-def make_page(registers):
+def make_rom(blocks):
+    text = ["// Made by fpga/regs/generate.py from blocks.txt; change that file."]
+    text += [f"6'd{number}: word <= 32'h{word:08x};  // {name}: {size} {meaning}"
+             for number, (name, word, size, meaning) in enumerate(blocks)]
+    return "\n".join(text) + "\n"
+
+
+def make_page(registers, blocks):
     text = ["# Registers of the board", "",
-            "Made by `fpga/regs/generate.py` from `fpga/regs/registers.txt`; change that file. Addresses count 32-bit words.",
+            "Made by `fpga/regs/generate.py` from `registers.txt` and `blocks.txt` beside it. Addresses count 32-bit words.",
             "Values of more than 32 bits take two words, low word first; writing the high word takes both. `ro` is read only,",
-            "`rw` read and write, `wo` a command: reading gives 0.", "",
+            "`rw` read and write, `wo` a command: reading gives 0. The board refuses (status bit 11) a 0 where a range begins with 1, a",
+            "value of more bits than the register has, any change from 0x30 to 0x35 and from 0x39 to 0x3f (but low_level) while slots run, and to run slots while their settings",
+            "do not fit together or are younger than four clocks. A-B registers are checked when they are loaded.", "",
             "| address | name | bits | access | reset | range | meaning |", "|---|---|---|---|---|---|---|"]
     for r in registers:
         reset = f"{r['reset']:#x}" if r["reset"] > 0xFFFF else str(r["reset"])
         text.append(f"| 0x{r['address']:02x} | `{r['name']}` | {r['bits']} | {r['access']} | {reset} | {r['range']} | "
                     f"{r['meaning']} |".replace("|  |", "| |"))
+    text += ["", "## Descriptor ROM", "", "What the board is made of, a word a block (kind in bits 31..24, version in 23..16, size in 15..0) and a 0 behind the",
+             "last. The host reads it when it opens the board.", "", "| address | word | block | size |", "|---|---|---|---|"]
+    text += [f"| {0x80 + number:#04x} | {word:#010x} | {name} | {size} {meaning} |"
+             for number, (name, word, size, meaning) in enumerate(blocks)]
     return "\n".join(text) + "\n"
 
 
 def main():
-    registers = read_registers()
-    made = {ROOT / "fpga/model/include/gravure/fpga/register_map.hpp": make_header(registers),
+    registers, blocks = read_registers(), read_blocks()
+    made = {ROOT / "fpga/model/include/gravure/fpga/register_map.hpp": make_header(registers, blocks),
             ROOT / "fpga/rtl/registers.vh": make_verilog(registers),
-            ROOT / "docs/registers.md": make_page(registers)}
+            ROOT / "fpga/rtl/descriptors.vh": make_rom(blocks),
+            ROOT / "docs/registers.md": make_page(registers, blocks)}
     stale = [path for path, text in made.items() if not path.exists() or path.read_text() != text]
     for path in stale:
         print(f"{path.relative_to(ROOT)}: {'stale; run fpga/regs/generate.py' if '--check' in sys.argv else 'written'}")

@@ -49,7 +49,7 @@ module ab_pacer #(
   assign busy = loading != 0;
   reg [BITS-1:0] new_step;
   reg [P-1:0] new_period;
-  reg [F-1:0] new_num, new_den;
+  reg [F-1:0] new_num;
   reg new_over, new_quarter, new_zero, new_one;
   reg [P-1:0] new_period_less;
   reg new_ok;
@@ -58,7 +58,6 @@ module ab_pacer #(
 
   reg has_fraction;   // of the registers that `step` belongs to
   reg word_fraction;  // and of those of the word that follows
-  reg [BITS-1:0] next_step;
   reg next_step_ok, next_step_bad;
 
   // Pace: FPGA clocks until the next step.
@@ -117,18 +116,16 @@ module ab_pacer #(
       if (loading[7]) begin
         step <= new_step;
         has_fraction <= !fraction_off;
-      end else if (next_step_ok) step <= next_step;
+      end else if (next_step_ok) step <= new_step;
       if (loading[6]) word_fraction <= !fraction_off;
       if (loading[2]) refused <= !new_ok;
       if (next_step_ok) refused <= 1'b0;
       if (next_step_bad) refused <= 1'b1;
     end
-    next_step <= increment;
+    if (!busy) new_step <= increment;  // a new increment alone waits for one clock here, too
     if (load && !busy) begin
-      new_step <= increment;
       new_period <= prescaler;
       new_num <= fraction_num;
-      new_den <= fraction_den;
       new_over <= over;
       new_quarter <= quarter;
     end
@@ -159,7 +156,7 @@ module ab_pacer #(
       wire [F+1:0] next_y = {y, 1'b1} + (y[F] ? {1'b0, addend, 1'b0} : {1'b1, ~below, 1'b1});
       /* verilator lint_on UNUSEDSIGNAL */
       always @(posedge clk) begin
-        rest <= {1'b0, new_den} - {1'b0, new_num};
+        if (load && !busy) rest <= {1'b0, fraction_den} - {1'b0, fraction_num};
         num_zero <= new_num == 0;
         twice <= {1'b0, new_num} - {1'b0, rest[F-1:0]};
         num_2 <= wraps ? twice[F-1:0] : {new_num[F-2:0], 1'b0};
@@ -191,11 +188,12 @@ module ab_pacer #(
         less <= {$signed(add_y) < $signed(limit), $signed(add_x) < $signed(limit)};
       end
     end else begin : without_fraction
-      reg num_zero;
+      reg num_zero, no_den;
       assign fraction_ok = num_zero;
       assign fraction_off = num_zero;
       assign carried = 2'd0;
-      always @(posedge clk) num_zero <= new_num == 0 && new_den != 0;
+      always @(posedge clk) if (load && !busy) no_den <= fraction_den == 0;
+      always @(posedge clk) num_zero <= new_num == 0 && !no_den;
     end
   endgenerate
 `ifdef FORMAL
@@ -212,6 +210,8 @@ module ab_pacer #(
   wire [F:0] ref_sum_1 = ref_acc_0 + (ref_due_1 ? {1'b0, ref_num} : {(F + 1) {1'b0}});
   wire ref_carry_1 = ref_sum_1 >= {1'b0, ref_den};
   wire [F:0] ref_acc_1 = ref_carry_1 ? ref_sum_1 - {1'b0, ref_den} : ref_sum_1;
+  reg [F-1:0] ref_new_den;
+  always @(posedge clk) if (load && !busy) ref_new_den <= fraction_den;
   reg [3:0] ref_0, ref_1, ref_2, ref_3;
   reg valid = 1'b0;
   initial assume (rst);
@@ -233,7 +233,7 @@ module ab_pacer #(
       ref_period <= new_period;
       ref_acc <= 0;
       ref_num <= new_num;
-      ref_den <= new_den;
+      ref_den <= ref_new_den;
     end else if (enable) begin
       ref_phase <= ref_phase_1;
       ref_acc <= ref_acc_1[F-1:0];
@@ -251,7 +251,7 @@ module ab_pacer #(
     if (loading[7:3] != 0) assert (!new_over && (fraction_off || !new_quarter));
     if (has_fraction) assert (step < QUARTER);
     if (!has_fraction) assert (carry == 0);
-    if (next_step_ok) assert (next_step <= QUARTER && !(has_fraction && next_step == QUARTER) && loading[7:1] == 0);
+    if (next_step_ok) assert (new_step <= QUARTER && !(has_fraction && new_step == QUARTER) && loading[7:1] == 0);
     if (!loading[7]) assert (word_fraction == has_fraction);
     if (loading[7]) assert (word_fraction == !fraction_off);
 `ifdef FORMAL_CONTRACT

@@ -4,6 +4,7 @@
 // all that but the 0xA5 (little endian). Payload goes to the FIFO on trial; a frame that is in sequence, in shape and
 // whole is committed, any other is rolled back and stops the parser: it takes no byte until clear. Faults are sticky
 // until clear; of several in one frame the first of sequence, shape, checksum is reported.
+// `odd` belongs to the line committed last: its number, counted from the job's first line, is odd.
 // position_load sets the line that must come next (after clear, before a job).
 // Latency: commit or fault three clocks after the frame's last byte (VERDICT_LATENCY); line_valid on the same clock as
 // commit. The settings and the position are to stand for two clocks before a frame's last byte.
@@ -27,6 +28,7 @@ module frame_parser (
     output reg rollback,
     output reg line_valid,
     output reg [15:0] first_slot,
+    output reg odd,
     output reg sequence_error,
     output reg shape_error,
     output reg checksum_error,
@@ -101,6 +103,7 @@ module frame_parser (
       if (rst) begin
         push_data <= 0;
         first_slot <= 0;
+        odd <= 1'b0;
         revolution <= 0;
         line <= 0;
       end
@@ -114,6 +117,7 @@ module frame_parser (
         checksum_error <= !bad_sequence && !bad_shape && window_fits && bad_checksum;
         if (!bad) begin
           first_slot <= new_first_slot;
+          odd <= (revolution[0] && lines_per_revolution[0]) ^ line[0];
           line <= last_line ? 32'd0 : next_line;
           if (last_line) revolution <= revolution + 32'd1;
         end

@@ -2,13 +2,14 @@
 //
 // While `run` is high, segments are taken in order: load_increment and increment for one clock, then the next segment's
 // exactly `clocks` clocks later (0 acts as 1). The last increment stays in force. A push into a full list is dropped and
-// sets `overflow`, sticky until flush. Latency: load_increment is a flip-flop, one clock after the segment is due.
-// Reset and flush: empty.
+// sets `overflow`, sticky until flush. The list is a line_fifo, so it maps to block RAM.
+// Latency: load_increment is a flip-flop, one clock after the segment is due (SCHEDULE_LATENCY); a segment can be due
+// three clocks after its push at the earliest. Reset and flush: empty, increment 0.
 `default_nettype none
 module increment_schedule #(
     parameter BITS = 32,
     parameter W = 32,
-    parameter ADDRESS_BITS = 4
+    parameter ADDRESS_BITS = 8
 ) (
     input wire clk,
     input wire rst,
@@ -21,36 +22,31 @@ module increment_schedule #(
     output reg [BITS-1:0] increment,
     output reg busy,
     output wire full,
-    output reg overflow
+    output wire overflow
 );
-  localparam A = ADDRESS_BITS;
-  reg [BITS+W-1:0] segments[0:(1<<A)-1];
-  reg [A:0] written, taken;
   reg [W-1:0] left;  // clocks until the next segment is due
-
-  wire [A:0] used = written - taken;
-  assign full = used[A];
+  wire segment_valid;
+  wire [BITS+W-1:0] segment;
   wire due = run && left <= 1;
-  wire next = due && used != 0;
-  wire [BITS+W-1:0] segment = segments[taken[A-1:0]];
+  wire next = due && segment_valid;
+  /* verilator lint_off PINCONNECTEMPTY */
+  line_fifo #(.W(BITS + W), .ADDRESS_BITS(ADDRESS_BITS)) segments (
+      .clk(clk), .rst(rst), .flush(flush), .push(push), .push_data({push_increment, push_clocks}), .commit(1'b1),
+      .rollback(1'b0), .pop(next), .low_level({(ADDRESS_BITS + 2) {1'b0}}), .valid(segment_valid), .data(segment),
+      .level(), .almost_empty(), .full(full), .overflow(overflow)
+  );
+  /* verilator lint_on PINCONNECTEMPTY */
 
   always @(posedge clk) begin
-    if (push && !full && !rst && !flush) segments[written[A-1:0]] <= {push_increment, push_clocks};
-    if (next) increment <= segment[BITS+W-1:W];
     if (rst || flush) begin
-      written <= 0;
-      taken <= 0;
       left <= 0;
       load_increment <= 1'b0;
       busy <= 1'b0;
-      overflow <= 1'b0;
       increment <= 0;
     end else begin
-      if (push && !full) written <= written + 1'b1;
-      if (push && full) overflow <= 1'b1;
       load_increment <= next;
       if (next) begin
-        taken <= taken + 1'b1;
+        increment <= segment[BITS+W-1:W];
         left <= segment[W-1:0];
       end else if (run && left != 0) left <= left - 1'b1;
       busy <= next || (busy && !due);
@@ -73,7 +69,6 @@ module increment_schedule #(
     end else if (run && left != 0) since <= since + 1'b1;
   end
   always @(*) if (valid) begin
-    assert (used <= (1 << A));
     if (loaded) assert (since + left == asked && since <= asked);
   end
 `endif

@@ -1,7 +1,8 @@
-// Slot divider: a strobe at the first tick of every pulse slot, every ticks_per_slot-th clock (j * k).
+// Slot divider: a strobe at the first seed clock of every pulse slot, every seeds_per_slot-th clock (k).
 //
-// run low stops it; the first slot begins on the clock that finds run high. A ticks_per_slot of 0 acts as 1.
-// Latency: `slot` is a flip-flop, high in the clock after the tick it marks. Reset: idle.
+// run low stops it; the first slot begins on the clock that finds run high. A seeds_per_slot of 0 acts as 1. adjust makes
+// the slot that runs longer by `amount` (two's complement: or shorter; a slot that is over by then ends at once).
+// Latency: `slot` is a flip-flop, high in the clock after the one it marks. Reset: idle.
 `default_nettype none
 module slot_divider #(
     parameter W = 16
@@ -9,40 +10,58 @@ module slot_divider #(
     input wire clk,
     input wire rst,
     input wire run,
-    input wire [W-1:0] ticks_per_slot,
+    input wire [W-1:0] seeds_per_slot,
+    input wire adjust,
+    input wire [8:0] amount,
     output reg slot
 );
-  reg [W-1:0] phase;
-  wire wrap = {1'b0, phase} + 1'b1 >= {1'b0, ticks_per_slot};
+  // phase + 1 of the clock that comes, and how many clocks the slot lasts; one bit more than k for the adjustment.
+  reg [W:0] count, length;
+  reg begins;
 
   always @(posedge clk) begin
     if (rst || !run) begin
-      phase <= 0;
       slot <= 1'b0;
+      count <= 1;
+      length <= {1'b0, seeds_per_slot};
+      begins <= 1'b1;
     end else begin
-      slot <= phase == 0;
-      phase <= wrap ? {W{1'b0}} : phase + 1'b1;
+      slot <= begins;
+      begins <= count >= length;
+      count <= count >= length ? {{W{1'b0}}, 1'b1} : count + 1'b1;
+      if (count >= length) length <= {1'b0, seeds_per_slot};
+      else if (adjust) length <= length + {{(W - 8) {amount[8]}}, amount};
     end
   end
 
 `ifdef FORMAL
-  // With a constant setting: from one slot to the next exactly ticks_per_slot clocks.
+  // With a constant k: a slot lasts k clocks, and what it was adjusted by, if that came in time.
   (* anyconst *) reg [W-1:0] fixed;
-  reg [W:0] since;
+  reg [W+1:0] since, want;  // of the slot that runs: clocks so far, and how many it is to last
+  wire [W+1:0] change = {{(W - 7) {amount[8]}}, amount};
+  wire changes = adjust && count < length;
   reg seen = 1'b0;
   initial assume (rst);
-  always @(*) assume (ticks_per_slot == fixed && fixed != 0);
+  always @(*) begin
+    assume (seeds_per_slot == fixed && fixed != 0 && fixed < 1 << (W - 1));
+    if (changes && begins) assume (fixed + change >= 2 && fixed + change < 1 << W);
+    if (changes && !begins) assume (want + change >= since + 2 && want + change < 1 << W);
+  end
   always @(posedge clk) begin
     if (rst || !run) seen <= 1'b0;
-    else if (phase == 0) begin
+    else if (begins) begin
       seen  <= 1'b1;
       since <= 1;
-    end else since <= since + 1'b1;
+      want  <= fixed + (changes ? change : 0);
+    end else begin
+      since <= since + 1'b1;
+      if (changes) want <= want + change;
+    end
   end
   always @(*) if (seen) begin
     assert (slot == (since == 1));
-    assert (phase == (since == {1'b0, fixed} ? 0 : since[W-1:0]));
-    assert (since <= {1'b0, fixed} && since != 0);
+    assert (begins == (since == want) && since <= want);
+    assert (begins ? count == 1 && length == fixed : count == since + 1 && length == want);
   end
 `endif
 endmodule

@@ -1,17 +1,21 @@
-// Synchro: the board's whole logic, registers.vh its map. All but the A-B accumulator runs at the seed clock `clk`;
+// Synchro: the board's whole logic, registers.vh its map. All but the A-B accumulators runs at the seed clock `clk`;
 // clk_fast is the FPGA clock, two a seed clock, an edge of it with every edge of clk.
 //
-// host bytes -> frame_parser -> line_fifo (bits) and line queue (first slots) -> pulse_gate, paced by slot_divider and
-// line_sequencer; the axis by ab_generator; scanner_clock; watchdog and fault_latch close the gate.
-// Lines begin at the first slot after `start` was seen while slots run, and then follow without a gap for as long as they
-// run: the machine never waits, a line that is not there in time is an underrun.
+// host bytes -> frame_parser -> line_fifo (bits) and line queue (first slot, direction) -> pulse_gate, paced by line_start,
+// slot_divider, line_sequencer and direction_delay; two axes by ab_generator, each with its increment_schedule;
+// scanner_clock; index_reference lets the lines follow the axis; watchdog and fault_latch close the gate.
+// Axis 1 has a fraction where FRACTION_1 is 1; with two the logic does not fit an HX8K.
+// Once lines have begun they follow without a gap for as long as slots run: the machine never waits, a line that is not
+// there in time is an underrun.
 // Fails dark: any fault, the interlock or a stop closes the gate; command bit 0 acknowledges, and drops all that was queued.
 // To go on after a fault: stop the slots, acknowledge, load the position, send lines, run, start.
-// Latency: a slot's first tick to `gate` is three clocks (SLOT_TO_GATE: divider, sequencer, gate). Reset: as the map says,
-// dark, everything standing.
+// Latency: a slot's first clock to `gate` is four seed clocks (SLOT_TO_GATE: divider, sequencer, delay, gate), to `scan`
+// three; an address to read_data two (READ_LATENCY). Reset: as the map says, dark, everything standing.
 `default_nettype none
 module synchro #(
-    parameter FIFO_BITS = 12
+    parameter FIFO_BITS = 12,
+    parameter SCHEDULE_BITS = 8,
+    parameter FRACTION_1 = 0
 ) (
     input wire clk,
     input wire clk_fast,
@@ -22,141 +26,162 @@ module synchro #(
     input wire in_valid,
     input wire [7:0] in_data,
     input wire start,
+    input wire index,
     input wire interlock,
-    output reg [31:0] read_data,
+    output wire [31:0] read_data,
     output wire a,
     output wire b,
+    output wire a_1,
+    output wire b_1,
     output wire gate,
     output wire scan,
     output wire [2:0] fault
 );
-  /* verilator lint_off UNUSEDPARAM */
-  `include "registers.vh"
-  /* verilator lint_on UNUSEDPARAM */
-
-  // Registers.
-  reg [2:0] control;
-  reg [3:0] command;
-  reg [31:0] increment, prescaler;
-  reg [33:0] fraction_num, fraction_den;
-  reg [31:0] num_low, den_low;  // low words wait for their high ones
-  reg [15:0] ticks_per_slot, slots_per_line, window_slots, slots_per_microvector;
-  reg [31:0] lines_per_revolution, position_revolution, position_line, silence_limit;
+  wire [6:0] control;
+  wire [9:0] command;
   wire run = control[0];
   wire acknowledge = command[0];
 
-  always @(posedge clk) begin
-    command <= 4'd0;
-    if (rst) begin
-      control <= RESET_CONTROL;
-      increment <= RESET_INCREMENT;
-      prescaler <= RESET_PRESCALER;
-      fraction_num <= RESET_FRACTION_NUM;
-      fraction_den <= RESET_FRACTION_DEN;
-      num_low <= 0;
-      den_low <= 0;
-      ticks_per_slot <= RESET_TICKS_PER_SLOT;
-      slots_per_line <= RESET_SLOTS_PER_LINE;
-      window_slots <= RESET_WINDOW_SLOTS;
-      slots_per_microvector <= RESET_SLOTS_PER_MICROVECTOR;
-      lines_per_revolution <= RESET_LINES_PER_REVOLUTION;
-      position_revolution <= RESET_POSITION_REVOLUTION;
-      position_line <= RESET_POSITION_LINE;
-      silence_limit <= RESET_SILENCE_LIMIT;
-    end else if (write) begin
-      case (address)
-        ADDRESS_CONTROL: control <= write_data[2:0];
-        ADDRESS_COMMAND: command <= write_data[3:0];
-        ADDRESS_INCREMENT: increment <= write_data;
-        ADDRESS_PRESCALER: prescaler <= write_data;
-        ADDRESS_FRACTION_NUM: num_low <= write_data;
-        ADDRESS_FRACTION_NUM + 8'd1: fraction_num <= {write_data[1:0], num_low};
-        ADDRESS_FRACTION_DEN: den_low <= write_data;
-        ADDRESS_FRACTION_DEN + 8'd1: fraction_den <= {write_data[1:0], den_low};
-        ADDRESS_TICKS_PER_SLOT: ticks_per_slot <= write_data[15:0];
-        ADDRESS_SLOTS_PER_LINE: slots_per_line <= write_data[15:0];
-        ADDRESS_WINDOW_SLOTS: window_slots <= write_data[15:0];
-        ADDRESS_SLOTS_PER_MICROVECTOR: slots_per_microvector <= write_data[15:0];
-        ADDRESS_LINES_PER_REVOLUTION: lines_per_revolution <= write_data;
-        ADDRESS_POSITION_REVOLUTION: position_revolution <= write_data;
-        ADDRESS_POSITION_LINE: position_line <= write_data;
-        ADDRESS_SILENCE_LIMIT: silence_limit <= write_data;
-        default: ;
-      endcase
-    end
-  end
+  wire [31:0] increment, prescaler, increment_1, prescaler_1, lines_per_revolution, position_revolution, position_line;
+  wire [31:0] silence_limit, first_tick, schedule_increment, schedule_seeds;
+  wire [33:0] fraction_num, fraction_den, fraction_num_1, fraction_den_1;
+  wire [15:0] seeds_per_slot, slots_per_line, window_slots, slots_per_microvector, reverse_delay, low_level, index_window;
+  wire [7:0] correction_limit;
+  wire [47:0] revolution_seeds;
+  wire setting_refused;
+  settings host_settings (
+      .clk(clk), .rst(rst), .clear(acknowledge), .write(write), .address(address), .write_data(write_data),
+      .control(control), .command(command), .increment(increment), .prescaler(prescaler), .fraction_num(fraction_num),
+      .fraction_den(fraction_den), .increment_1(increment_1), .prescaler_1(prescaler_1), .fraction_num_1(fraction_num_1),
+      .fraction_den_1(fraction_den_1), .seeds_per_slot(seeds_per_slot), .slots_per_line(slots_per_line),
+      .window_slots(window_slots), .slots_per_microvector(slots_per_microvector),
+      .lines_per_revolution(lines_per_revolution), .position_revolution(position_revolution),
+      .position_line(position_line), .silence_limit(silence_limit), .first_tick(first_tick),
+      .reverse_delay(reverse_delay), .low_level(low_level), .correction_limit(correction_limit),
+      .index_window(index_window), .revolution_seeds(revolution_seeds), .schedule_increment(schedule_increment),
+      .schedule_seeds(schedule_seeds), .refused(setting_refused)
+  );
 
-  // The axis.
-  wire ab_refused;
+  // The axes. A segment of a schedule goes before an increment of the host.
+  wire [1:0] scheduled, schedule_busy, schedule_overflow, ab_refused;
+  wire [31:0] scheduled_increment, scheduled_increment_1;
+  reg schedules_run;
+  always @(posedge clk) schedules_run <= !rst && !command[9] && (schedules_run || command[6]);
   /* verilator lint_off PINCONNECTEMPTY */
+  increment_schedule #(.ADDRESS_BITS(SCHEDULE_BITS)) schedule (
+      .clk(clk), .rst(rst), .flush(command[9]), .run(schedules_run), .push(command[7]),
+      .push_increment(schedule_increment), .push_clocks(schedule_seeds), .load_increment(scheduled[0]),
+      .increment(scheduled_increment), .busy(schedule_busy[0]), .full(), .overflow(schedule_overflow[0])
+  );
+  increment_schedule #(.ADDRESS_BITS(SCHEDULE_BITS)) schedule_1 (
+      .clk(clk), .rst(rst), .flush(command[9]), .run(schedules_run), .push(command[8]),
+      .push_increment(schedule_increment), .push_clocks(schedule_seeds), .load_increment(scheduled[1]),
+      .increment(scheduled_increment_1), .busy(schedule_busy[1]), .full(), .overflow(schedule_overflow[1])
+  );
   ab_generator axis (
-      .clk(clk), .clk_fast(clk_fast), .rst(rst), .enable(control[1]), .load(command[1]), .load_increment(command[2]), .increment(increment),
+      .clk(clk), .clk_fast(clk_fast), .rst(rst), .enable(control[1]), .load(command[1]),
+      .load_increment(command[2] || scheduled[0]), .increment(scheduled[0] ? scheduled_increment : increment),
       .prescaler(prescaler), .fraction_num(fraction_num), .fraction_den(fraction_den), .a(a), .b(b),
-      .refused(ab_refused), .busy()
+      .refused(ab_refused[0]), .busy()
+  );
+  ab_generator #(.FRACTION(FRACTION_1)) axis_1 (
+      .clk(clk), .clk_fast(clk_fast), .rst(rst), .enable(control[3]), .load(command[4]),
+      .load_increment(command[5] || scheduled[1]), .increment(scheduled[1] ? scheduled_increment_1 : increment_1),
+      .prescaler(prescaler_1), .fraction_num(fraction_num_1), .fraction_den(fraction_den_1), .a(a_1), .b(b_1),
+      .refused(ab_refused[1]), .busy()
   );
 
   // From the host to whole lines.
   wire push, commit, rollback, line_valid, sequence_error, shape_error, checksum_error;
   wire [7:0] push_data;
   wire [15:0] first_slot;
+  wire line_is_odd;
   frame_parser parser (
       .clk(clk), .rst(rst), .clear(acknowledge), .in_valid(in_valid), .in_data(in_data),
       .slots_per_line(slots_per_line), .window_slots(window_slots), .lines_per_revolution(lines_per_revolution),
       .position_load(command[3]), .position_revolution(position_revolution), .position_line(position_line),
       .push(push), .push_data(push_data), .commit(commit), .rollback(rollback), .line_valid(line_valid),
-      .first_slot(first_slot), .sequence_error(sequence_error), .shape_error(shape_error),
+      .first_slot(first_slot), .odd(line_is_odd), .sequence_error(sequence_error), .shape_error(shape_error),
       .checksum_error(checksum_error), .revolution(), .line()
   );
 
-  wire byte_valid, byte_take, overflow;
+  wire byte_valid, byte_take, overflow, almost_empty;
   wire [7:0] byte_data;
   wire [FIFO_BITS+1:0] level;
+  wire [FIFO_BITS+1:0] low = low_level >> (FIFO_BITS + 2) != 0 ? {(FIFO_BITS + 2) {1'b1}} : low_level[FIFO_BITS+1:0];
   line_fifo #(.W(8), .ADDRESS_BITS(FIFO_BITS)) bits (
       .clk(clk), .rst(rst), .flush(acknowledge), .push(push), .push_data(push_data), .commit(commit),
-      .rollback(rollback), .pop(byte_take), .valid(byte_valid), .data(byte_data), .low_level({(FIFO_BITS + 2) {1'b0}}), .level(level), .almost_empty(), .full(),
-      .overflow(overflow)
+      .rollback(rollback), .pop(byte_take), .low_level(low), .valid(byte_valid), .data(byte_data), .level(level),
+      .almost_empty(almost_empty), .full(), .overflow(overflow)
   );
 
-  // One entry a committed line: its first slot, committed one clock after it was pushed.
+  // One entry a committed line, committed one clock after it was pushed.
   reg queue_commit;
   always @(posedge clk) queue_commit <= line_valid && !rst;
-  wire queue_valid, queue_overflow, first;
+  wire queue_valid, queue_overflow, line_first, queue_odd;
   wire [15:0] queue_first_slot;
-  line_fifo #(.W(16), .ADDRESS_BITS(4)) queue (
-      .clk(clk), .rst(rst), .flush(acknowledge), .push(line_valid), .push_data(first_slot), .commit(queue_commit),
-      .rollback(1'b0), .pop(first), .valid(queue_valid), .data(queue_first_slot), .low_level(6'd0), .level(), .almost_empty(), .full(),
-      .overflow(queue_overflow)
+  line_fifo #(.W(17), .ADDRESS_BITS(4)) queue (
+      .clk(clk), .rst(rst), .flush(acknowledge), .push(line_valid), .push_data({line_is_odd, first_slot}),
+      .commit(queue_commit), .rollback(1'b0), .pop(line_first), .low_level(6'd0), .valid(queue_valid),
+      .data({queue_odd, queue_first_slot}), .level(), .almost_empty(), .full(), .overflow(queue_overflow)
   );
 
-  // Slots, lines, gate.
-  wire slot, slot_out, decision, window, last, running;
-  slot_divider slots (.clk(clk), .rst(rst), .run(run), .ticks_per_slot(ticks_per_slot), .slot(slot));
-
-  reg started;
-  always @(posedge clk) started <= !rst && run && (started || start);
+  // Slots and lines.
+  wire slots_run, started, slot, adjust;
+  wire [8:0] amount;
+  line_start starter (
+      .clk(clk), .rst(rst), .run(run), .timed(control[4]), .strobe(start), .go(command[6]), .first_tick(first_tick),
+      .slots_run(slots_run), .started(started)
+  );
+  slot_divider slots (
+      .clk(clk), .rst(rst), .run(slots_run), .seeds_per_slot(seeds_per_slot), .adjust(adjust), .amount(amount),
+      .slot(slot)
+  );
+  wire line_slot, line_decision, line_window, line_last, running;
   wire missing = slot && started && !running && slots_per_line != 0 && !queue_valid;
   line_sequencer sequencer (
       .clk(clk), .rst(rst || !run), .slot(slot), .start(started), .slots_per_line(slots_per_line),
-      .first_slot(queue_first_slot), .window_slots(window_slots), .slot_out(slot_out), .decision(decision),
-      .window(window), .first(first), .last(last), .running(running)
+      .first_slot(queue_first_slot), .window_slots(window_slots), .slot_out(line_slot), .decision(line_decision),
+      .window(line_window), .first(line_first), .last(line_last), .running(running)
+  );
+  scanner_clock scanner (
+      .clk(clk), .rst(rst), .decision(line_decision), .first(line_first), .slots_per_microvector(slots_per_microvector),
+      .scan(scan)
+  );
+  wire [17:0] index_error;
+  wire referenced, index_lost;
+  index_reference reference (
+      .clk(clk), .rst(rst), .clear(acknowledge), .enable(control[6] && run), .index(index), .line_end(line_last),
+      .revolution(revolution_seeds), .window(index_window), .limit(correction_limit), .adjust(adjust), .amount(amount),
+      .error(index_error), .referenced(referenced), .lost(index_lost)
   );
 
-  reg was_missing;  // in step with the sequencer's outputs: the line before keeps its last slot whole
-  always @(posedge clk) was_missing <= missing && !rst && !acknowledge;
+  // The gate. A line that is missing closes it when the slot before it is over.
+  wire gate_slot, decision, window, first, last;
+  direction_delay directions (
+      .clk(clk), .rst(rst || !run), .delay(reverse_delay), .reverse(queue_odd && control[5]), .slot_in(line_slot),
+      .decision_in(line_decision), .window_in(line_window), .first_in(line_first), .last_in(line_last),
+      .slot(gate_slot), .decision(decision), .window(window), .first(first), .last(last)
+  );
+  reg line_missing, was_missing;
+  always @(posedge clk) begin
+    line_missing <= missing && !rst && !acknowledge;
+    was_missing <= line_missing && !rst && !acknowledge;
+  end
   wire underrun, dark, silent, any_fault;
-  wire close = interlock || (!acknowledge && (any_fault || was_missing || silent || overflow || queue_overflow ||
-                                              sequence_error || shape_error || checksum_error));
+  reg stream_error;  // anything wrong with what the host sent
+  always @(posedge clk)
+    stream_error <= !rst && !acknowledge &&
+                    (overflow || queue_overflow || sequence_error || shape_error || checksum_error);
+  wire close = interlock || (!acknowledge && (any_fault || was_missing || silent || stream_error));
   pulse_gate pulses (
-      .clk(clk), .rst(rst), .run(run), .clear(acknowledge), .fault(close), .slot(slot_out), .decision(decision),
+      .clk(clk), .rst(rst), .run(run), .clear(acknowledge), .fault(close), .slot(gate_slot), .decision(decision),
       .window(window), .first(first), .last(last), .byte_valid(byte_valid), .byte_data(byte_data), .gate(gate),
       .byte_take(byte_take), .underrun(underrun), .dark(dark)
   );
-  scanner_clock scanner (
-      .clk(clk), .rst(rst), .decision(decision), .first(first), .slots_per_microvector(slots_per_microvector),
-      .scan(scan)
-  );
 
   // Faults.
+  wire [5:0] faults_seen;
   watchdog host (
       .clk(clk), .rst(rst), .enable(control[2]), .kick(in_valid || write), .clear(acknowledge), .limit(silence_limit),
       .expired(silent)
@@ -166,36 +191,23 @@ module synchro #(
       .checksum_error(checksum_error && !acknowledge),
       .shape_error((shape_error || overflow || queue_overflow) && !acknowledge),
       .underrun((underrun || was_missing) && !acknowledge), .host_silence(silent && !acknowledge),
-      .interlock(interlock), .fault(fault), .any(any_fault)
+      .interlock(interlock), .fault(fault), .seen(faults_seen), .any(any_fault)
   );
 
-  always @(posedge clk) begin
-    case (address)
-      ADDRESS_MAGIC: read_data <= RESET_MAGIC;
-      ADDRESS_VERSION: read_data <= RESET_VERSION;
-      ADDRESS_COUNTER_BITS: read_data <= {24'd0, RESET_COUNTER_BITS};
-      ADDRESS_FIFO_BITS: read_data <= FIFO_BITS;
-      ADDRESS_CLOCK_MULTIPLIER: read_data <= {24'd0, RESET_CLOCK_MULTIPLIER};
-      ADDRESS_CONTROL: read_data <= {29'd0, control};
-      ADDRESS_STATUS: read_data <= {25'd0, overflow || queue_overflow, ab_refused, running, dark, fault};
-      ADDRESS_FIFO_LEVEL: read_data <= {{(30 - FIFO_BITS) {1'b0}}, level};
-      ADDRESS_INCREMENT: read_data <= increment;
-      ADDRESS_PRESCALER: read_data <= prescaler;
-      ADDRESS_FRACTION_NUM: read_data <= fraction_num[31:0];
-      ADDRESS_FRACTION_NUM + 8'd1: read_data <= {30'd0, fraction_num[33:32]};
-      ADDRESS_FRACTION_DEN: read_data <= fraction_den[31:0];
-      ADDRESS_FRACTION_DEN + 8'd1: read_data <= {30'd0, fraction_den[33:32]};
-      ADDRESS_TICKS_PER_SLOT: read_data <= {16'd0, ticks_per_slot};
-      ADDRESS_SLOTS_PER_LINE: read_data <= {16'd0, slots_per_line};
-      ADDRESS_WINDOW_SLOTS: read_data <= {16'd0, window_slots};
-      ADDRESS_SLOTS_PER_MICROVECTOR: read_data <= {16'd0, slots_per_microvector};
-      ADDRESS_LINES_PER_REVOLUTION: read_data <= lines_per_revolution;
-      ADDRESS_POSITION_REVOLUTION: read_data <= position_revolution;
-      ADDRESS_POSITION_LINE: read_data <= position_line;
-      ADDRESS_SILENCE_LIMIT: read_data <= silence_limit;
-      default: read_data <= 32'd0;
-    endcase
-    if (rst) read_data <= 32'd0;
-  end
+  wire [15:0] status = {referenced, almost_empty, started, index_lost, setting_refused, schedule_overflow != 0,
+                        schedule_busy, ab_refused[1], overflow || queue_overflow, ab_refused[0], running, dark, fault};
+  register_read #(.FIFO_BITS(FIFO_BITS)) reader (
+      .clk(clk), .rst(rst), .address(address), .control(control), .status(status), .level(level), .faults(faults_seen),
+      .index_error(index_error), .increment(increment), .prescaler(prescaler), .fraction_num(fraction_num),
+      .fraction_den(fraction_den), .increment_1(increment_1), .prescaler_1(prescaler_1), .fraction_num_1(fraction_num_1),
+      .fraction_den_1(fraction_den_1), .seeds_per_slot(seeds_per_slot), .slots_per_line(slots_per_line),
+      .window_slots(window_slots), .slots_per_microvector(slots_per_microvector),
+      .lines_per_revolution(lines_per_revolution), .position_revolution(position_revolution),
+      .position_line(position_line), .silence_limit(silence_limit), .first_tick(first_tick),
+      .reverse_delay(reverse_delay), .low_level(low_level), .correction_limit(correction_limit),
+      .index_window(index_window), .revolution_seeds(revolution_seeds), .schedule_increment(schedule_increment),
+      .schedule_seeds(schedule_seeds), .read_data(read_data)
+  );
+  /* verilator lint_on PINCONNECTEMPTY */
 endmodule
 `default_nettype wire

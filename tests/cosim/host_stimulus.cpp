@@ -84,33 +84,60 @@ void HostStimulus::send(Dice& dice, FrameMaker::Damage damage) {
   ++lines_sent_;
 }
 
-void HostStimulus::set_up(Dice& dice) {
-  const std::uint64_t slots = 30 + dice.word() % 20;
-  const std::uint64_t window = dice.one_in(10) ? dice.word() % 3 : dice.word() % (slots + 1);
-  const std::uint64_t ticks = dice.one_in(4) ? 1 + dice.word() % 2 : 2 + dice.word() % 5;
-  const std::uint64_t lines = 1 + dice.word() % 4;
+void HostStimulus::set_up_axes(Dice& dice) {
   const std::uint64_t den = 1 + (dice.word() & 0x3'FFFF'FFFEU);
-  write(fpga::kControlRegister, 0);
   write(fpga::kIncrementRegister, dice.one_in(8) ? dice.word() : dice.word() % (1U << 30U));
   write(fpga::kPrescalerRegister, dice.one_in(20) ? 0 : 1 + dice.word() % 3);
   write(fpga::kFractionNumRegister, dice.one_in(2) ? 0 : dice.word() % den);
   write(fpga::kFractionDenRegister, den);
-  write(fpga::kTicksPerSlotRegister, ticks);
+  write(fpga::kIncrement1Register, dice.one_in(8) ? dice.word() : dice.word() % (1U << 30U));
+  write(fpga::kPrescaler1Register, dice.one_in(20) ? 0 : 1 + dice.word() % 3);
+  write(fpga::kFractionNum1Register, dice.one_in(2) ? 0 : dice.word() % den);
+  write(fpga::kFractionDen1Register, den);
+  write(fpga::kCommandRegister, 512);  // empties the schedules
+  for (std::uint64_t segments = dice.word() % (dice.one_in(10) ? 40 : 8); segments > 0; --segments) {
+    write(fpga::kScheduleIncrementRegister, dice.one_in(20) ? dice.word() : dice.word() % (1U << 30U));
+    write(fpga::kScheduleSeedsRegister, dice.word() % 60);
+    write(fpga::kCommandRegister, dice.one_in(2) ? 128 : 256);
+  }
+}
+
+void HostStimulus::set_up(Dice& dice) {
+  const std::uint64_t slots = 30 + dice.word() % 20;
+  const std::uint64_t window = dice.one_in(10) ? dice.word() % 3 : dice.word() % (slots + 1);
+  const bool wide = dice.one_in(4);
+  const std::uint64_t seeds = wide ? 12 + dice.word() % 8 : dice.one_in(4) ? 1 + dice.word() % 2 : 2 + dice.word() % 5;
+  const std::uint64_t lines = 1 + dice.word() % 4;
+  const std::uint64_t delay = dice.one_in(30) ? seeds : dice.word() % (wide ? 4 : seeds);
+  write(fpga::kControlRegister, 0);
+  set_up_axes(dice);
+  write(fpga::kSeedsPerSlotRegister, seeds);
   write(fpga::kSlotsPerLineRegister, slots);
-  write(fpga::kWindowSlotsRegister, window);
-  write(fpga::kSlotsPerMicrovectorRegister, 1 + dice.word() % 8);
+  write(fpga::kWindowSlotsRegister, dice.one_in(40) ? slots + 1 : window);
+  write(fpga::kSlotsPerMicrovectorRegister, dice.word() % 8);
   write(fpga::kLinesPerRevolutionRegister, lines);
+  write(fpga::kPositionRevolutionRegister, dice.word() & 3U);
   write(fpga::kPositionRevolutionRegister, 0);
   write(fpga::kPositionLineRegister, 0);
   write(fpga::kSilenceLimitRegister, dice.one_in(5) ? 40 : 5000);
+  write(fpga::kFirstTickRegister, dice.word() % 400);
+  write(fpga::kReverseDelayRegister, dice.one_in(2) ? 0 : delay);
+  write(fpga::kLowLevelRegister, dice.word() % 40);
+  write(fpga::kCorrectionLimitRegister, wide ? dice.word() % 3 : 0);
+  write(fpga::kIndexWindowRegister, dice.word() % 60);
+  write(fpga::kRevolutionSeedsRegister, lines * slots * seeds);
   write(fpga::kCommandRegister, 1);
-  write(fpga::kCommandRegister, 2 + 8);
+  write(fpga::kCommandRegister, 2 + 8 + 16);
   maker_.configure(slots, window, lines);
-  line_ticks_ = slots * ticks;
+  line_ticks_ = slots * seeds;
+  turn_ticks_ = lines * line_ticks_;
+  next_index_ = clock_ + 200 + dice.word() % turn_ticks_;
   lines_sent_ = 0;
   send(dice, FrameMaker::Damage::none);
   send(dice, FrameMaker::Damage::none);
-  write(fpga::kControlRegister, dice.one_in(3) ? 7 : 3);
+  const std::uint64_t timed = dice.one_in(3) ? 16 : 0;
+  write(fpga::kControlRegister, (dice.one_in(3) ? 15 : 11) + timed + (dice.word() & 32U) + (dice.one_in(3) ? 0 : 64));
+  write(fpga::kCommandRegister, timed != 0 || dice.one_in(2) ? 64 : 0);
   actions_.push_back({Action::Kind::start});
   ready_ = true;
 }
@@ -118,10 +145,13 @@ void HostStimulus::set_up(Dice& dice) {
 void HostStimulus::feed(Dice& dice) {
   const std::uint64_t due = (clock_ - started_at_) / line_ticks_ + (dice.one_in(200) ? 20 : 2);
   if (lines_sent_ < due && !dice.one_in(40)) {
-    send(dice, random_damage(dice, 60));
+    send(dice, random_damage(dice, 20));
   } else if (dice.one_in(400)) {
     write(fpga::kIncrementRegister, dice.word() % (1U << 30U));
-    write(fpga::kCommandRegister, 4);
+    write(fpga::kIncrement1Register, dice.word() % (1U << 30U));
+    write(fpga::kCommandRegister, 4 + (dice.word() & 32U));
+  } else if (dice.one_in(2000)) {
+    write(fpga::kSlotsPerLineRegister, 7);  // refused while lines run
   } else {
     actions_.push_back({});
   }
@@ -154,9 +184,13 @@ void HostStimulus::operator()(Dice& dice, std::span<std::uint64_t> in) {
   }
   set("rst", reset ? 1 : 0);
   set("interlock", dice.one_in(20'000) ? 1 : 0);
+  if (clock_ >= next_index_ + 5) {
+    next_index_ = clock_ + turn_ticks_ - 5 + dice.word() % 5 - (dice.one_in(30) ? turn_ticks_ / 2 : 0);
+  }
+  set("index", clock_ >= next_index_ ? 1 : 0);
   set("start", action.kind == Action::Kind::start ? 1 : 0);
   set("write", action.kind == Action::Kind::write ? 1 : 0);
-  set("address", action.kind == Action::Kind::write ? action.address : dice.word() % 64);
+  set("address", action.kind == Action::Kind::write ? action.address : dice.word() % 160);
   set("write_data", action.kind == Action::Kind::write ? action.data : dice.word() & 0xFFFF'FFFFU);
   set("in_valid", action.kind == Action::Kind::byte ? 1 : 0);
   set("in_data", action.kind == Action::Kind::byte ? action.data : dice.word() & 0xFFU);

@@ -36,6 +36,7 @@ class HostStimulus {
     std::uint64_t data = 0;
   };
   void set_up(Dice& dice);
+  void set_up_axes(Dice& dice);
   void feed(Dice& dice);
   void write(const fpga::Register& target, std::uint64_t data);
   void send(Dice& dice, FrameMaker::Damage damage);
@@ -45,7 +46,9 @@ class HostStimulus {
   std::deque<Action> actions_;
   std::uint64_t clock_ = 0;
   std::uint64_t started_at_ = 0;
-  std::uint64_t line_ticks_ = 1;
+  std::uint64_t line_ticks_ = 1;  ///< in seed clocks, like all here
+  std::uint64_t turn_ticks_ = 1;
+  std::uint64_t next_index_ = 0;
   std::uint64_t lines_sent_ = 0;
   bool ready_ = false;
   bool held_ = false;

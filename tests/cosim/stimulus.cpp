@@ -1,5 +1,6 @@
 #include "stimulus.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "host_stimulus.hpp"
@@ -14,13 +15,15 @@ const std::map<std::string, std::uint64_t>& rare_strobes() {
       {"clear", 300},      {"fault", 400},         {"commit", 10},          {"rollback", 60},
       {"acknowledge", 20}, {"sequence_error", 40}, {"checksum_error", 40},  {"shape_error", 40},
       {"underrun", 40},    {"host_silence", 40},   {"interlock", 40},       {"kick", 8},
+      {"go", 60},          {"strobe", 30},         {"line_end", 20},        {"adjust", 30},
   };
   return strobes;
 }
 
 /// Inputs that stay for a while: stops and back-pressure come in stretches.
 bool is_level(const std::string& name) {
-  return name == "enable" || name == "run" || name == "pop" || name == "byte_valid";
+  return name == "enable" || name == "run" || name == "pop" || name == "byte_valid" || name == "timed" ||
+         name == "index" || name == "reverse";
 }
 
 /// A value for a wide input: extremes, small numbers, anything.
@@ -41,13 +44,12 @@ std::uint64_t wide_value(Dice& dice, const Port& port) {
 }  // namespace
 
 Stimulus stimulus_for(const Machine& machine) {
-  for (const Port& port : machine.inputs()) {
-    if (port.name == "write_data") {
-      return HostStimulus(machine.inputs());
-    }
-    if (port.name == "position_load") {
-      return FrameStimulus(machine.inputs());
-    }
+  const auto has = [&machine](const char* name) {
+    const auto& ports = machine.inputs();
+    return std::any_of(ports.begin(), ports.end(), [name](const Port& port) { return port.name == name; });
+  };
+  if (has("in_data")) {
+    return has("write_data") ? Stimulus(HostStimulus(machine.inputs())) : Stimulus(FrameStimulus(machine.inputs()));
   }
   return [ports = machine.inputs()](Dice& dice, std::span<std::uint64_t> in) {
     for (std::size_t at = 0; at < ports.size(); ++at) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "gravure/fpga/synchro.hpp"
 #include "stimulus.hpp"
 
@@ -13,17 +15,22 @@ TEST(HostStimulus, ReachesEveryFaultAndFiresManyLines) {
   const Stimulus stimulus = stimulus_for(*model);
   std::vector<std::uint64_t> in(model->inputs().size());
   std::vector<std::uint64_t> out(model->outputs().size());
+  const auto seen = [&](const char* name) {
+    const auto& ports = model->outputs();
+    const auto port = std::find_if(ports.begin(), ports.end(), [name](const Port& p) { return p.name == name; });
+    return out[static_cast<std::size_t>(port - ports.begin())];
+  };
   std::uint64_t gate_moves = 0;
   std::uint64_t scans = 0;
   std::uint64_t before = 0;
   std::vector<std::uint64_t> clocks_with_fault(8);
-  for (int clock = 0; clock < 1'000'000; ++clock) {
+  for (int clock = 0; clock < 2'000'000; ++clock) {
     stimulus(dice, in);
     model->step(in, out);
-    gate_moves += out[2] != before ? 1 : 0;
-    before = out[2];
-    scans += out[3];
-    ++clocks_with_fault[out[4]];
+    gate_moves += seen("gate") != before ? 1 : 0;
+    before = seen("gate");
+    scans += seen("scan");
+    ++clocks_with_fault[seen("fault")];
   }
   EXPECT_GT(gate_moves, 10'000U);
   EXPECT_GT(scans, 10'000U);

@@ -62,7 +62,7 @@ void FrameParser::take_bits(const Inputs& in, unsigned place) noexcept {
 }
 
 /// The clock after a frame's last byte.
-void FrameParser::judge() noexcept {
+void FrameParser::judge(const Inputs& in) noexcept {
   const bool shape = bad_shape_ || !window_fits_;
   out_.sequence_error = bad_sequence_;
   out_.shape_error = !bad_sequence_ && shape;
@@ -73,6 +73,7 @@ void FrameParser::judge() noexcept {
     return;
   }
   out_.first_slot = new_first_slot_;
+  out_.odd = (((out_.revolution & in.lines_per_revolution) ^ out_.line) & 1U) != 0;
   out_.line = last_line_ ? 0 : sums_.next_line;
   out_.revolution += last_line_ ? 1U : 0U;
 }
@@ -130,7 +131,7 @@ FrameParser::Outputs FrameParser::step(const Inputs& now) noexcept {
     reset(in.rst);
   } else {
     if (ended_) {
-      judge();
+      judge(in);
     }
     ended_ = false;
     if (taken) {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 namespace gravure::fpga {
 
-/// Bit-exact model of fpga/rtl/fault_latch.v: the first fault, until acknowledged; numbered like gravure::DeviceFault.
+/// Bit-exact model of fpga/rtl/fault_latch.v: the first fault until it is acknowledged, and which others came after it;
+/// numbered like gravure::DeviceFault.
 class FaultLatch {
  public:
   struct Inputs {
@@ -19,6 +21,7 @@ class FaultLatch {
   };
   struct Outputs {
     std::uint8_t fault = 0;
+    std::uint8_t seen = 0;  ///< bit n - 1: fault n
     bool any = false;
   };
 
@@ -26,6 +29,7 @@ class FaultLatch {
     if (in.rst) {
       return out_ = {};
     }
+    out_.seen = static_cast<std::uint8_t>(causes(in) | (in.acknowledge ? 0U : out_.seen));
     if (in.acknowledge || !out_.any) {
       out_.fault = cause(in);
       out_.any = out_.fault != 0;
@@ -34,17 +38,13 @@ class FaultLatch {
   }
 
  private:
+  static unsigned causes(const Inputs& in) noexcept {
+    return (in.sequence_error ? 1U : 0U) | (in.checksum_error ? 2U : 0U) | (in.shape_error ? 4U : 0U) |
+           (in.underrun ? 8U : 0U) | (in.host_silence ? 16U : 0U) | (in.interlock ? 32U : 0U);
+  }
   static std::uint8_t cause(const Inputs& in) noexcept {
-    const bool causes[] = {in.sequence_error, in.checksum_error, in.shape_error,
-                           in.underrun,       in.host_silence,   in.interlock};
-    std::uint8_t number = 0;
-    for (const bool present : causes) {
-      ++number;
-      if (present) {
-        return number;
-      }
-    }
-    return 0;
+    const unsigned present = causes(in);
+    return static_cast<std::uint8_t>(present == 0 ? 0 : 1 + std::countr_zero(present));
   }
 
   Outputs out_;

@@ -36,6 +36,7 @@ class FrameParser {
     bool checksum_error = false;
     std::uint8_t push_data = 0;
     std::uint16_t first_slot = 0;  ///< of the line committed last
+    bool odd = false;              ///< its number, counted from the job's first line, is odd
     std::uint32_t revolution = 0;  ///< that must come next
     std::uint32_t line = 0;
   };
@@ -55,7 +56,7 @@ class FrameParser {
   void take_head(const Inputs& in, unsigned place) noexcept;
   void take_bits(const Inputs& in, unsigned place) noexcept;
   void take_check(const Inputs& in, unsigned place, std::uint32_t crc) noexcept;
-  void judge() noexcept;
+  void judge(const Inputs& in) noexcept;
   bool bad() const noexcept { return bad_sequence_ || bad_shape_ || bad_checksum_ || !window_fits_; }
   void enter(Part part) noexcept;
 

@@ -1,15 +1,18 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
+
+#include "gravure/fpga/line_fifo.hpp"
 
 namespace gravure::fpga {
 
-/// Bit-exact model of fpga/rtl/increment_schedule.v (32 bits, 16 segments): loads the next increment exactly `clocks`
-/// clocks after the last, for spin-up and spin-down without a gap. The last increment stays in force.
+/// Bit-exact model of fpga/rtl/increment_schedule.v (32 bits, 2^address_bits segments): loads the next increment
+/// exactly `clocks` clocks after the last, for spin-up and spin-down without a gap. The last increment stays in force.
 class IncrementSchedule {
  public:
-  static constexpr std::uint64_t kSegments = 16;
+  static constexpr int kLatency = 1;  ///< clocks from a segment's due to load_increment
+
+  explicit IncrementSchedule(int address_bits = 8) : segments_(address_bits) {}
 
   struct Inputs {
     bool rst = false;
@@ -28,39 +31,35 @@ class IncrementSchedule {
   };
 
   Outputs step(const Inputs& in) noexcept {
+    const bool due = in.run && left_ <= 1;
+    const bool next = due && list_.valid;
+    const std::uint64_t segment = list_.data;
+    list_ = segments_.step({.rst = in.rst,
+                            .flush = in.flush,
+                            .push = in.push,
+                            .commit = true,
+                            .pop = next,
+                            .push_data = (std::uint64_t{in.push_increment} << 32U) | in.push_clocks});
+    out_.full = list_.full;
+    out_.overflow = list_.overflow;
     if (in.rst || in.flush) {
-      written_ = taken_ = 0;
       left_ = 0;
       return out_ = {};
     }
-    const bool due = in.run && left_ <= 1;
-    const bool next = due && written_ != taken_;
-    const bool full = written_ - taken_ == kSegments;
     out_.load_increment = next;
     out_.busy = next || (out_.busy && !due);
-    out_.overflow = out_.overflow || (in.push && full);
     if (next) {
-      const Segment& segment = segments_[taken_++ % kSegments];
-      out_.increment = segment.increment;
-      left_ = segment.clocks;
+      out_.increment = static_cast<std::uint32_t>(segment >> 32U);
+      left_ = static_cast<std::uint32_t>(segment);
     } else if (in.run && left_ != 0) {
       --left_;
     }
-    if (in.push && !full) {
-      segments_[written_++ % kSegments] = {in.push_increment, in.push_clocks};
-    }
-    out_.full = written_ - taken_ == kSegments;
     return out_;
   }
 
  private:
-  struct Segment {
-    std::uint32_t increment = 0;
-    std::uint32_t clocks = 0;
-  };
-  std::array<Segment, kSegments> segments_{};
-  std::uint64_t written_ = 0;
-  std::uint64_t taken_ = 0;
+  TrialFifo<std::uint64_t> segments_;
+  TrialFifo<std::uint64_t>::Outputs list_;
   std::uint32_t left_ = 0;
   Outputs out_;
 };

@@ -75,7 +75,7 @@ class TrialFifo {
 
 /// The bytes of lines.
 using LineFifo = TrialFifo<std::uint8_t>;
-/// The first slots of whole lines.
-using LineQueue = TrialFifo<std::uint16_t>;
+/// First slot and, in bit 16, direction of whole lines.
+using LineQueue = TrialFifo<std::uint32_t>;
 
 }  // namespace gravure::fpga
