@@ -39,20 +39,12 @@ std::vector<std::byte> starter_picture(int layer) {
   return bits;
 }
 
-Result<int> run(const Options& options, const Command& command) {
-  const fs::path job = fs::path(options.folder) / "job.toml";
-  const fs::path layers = fs::path(options.folder) / "layers";
+Result<void> write_starter(const fs::path& job, const fs::path& layers, std::vector<std::string>& written) {
   std::error_code failed;
-  for (const fs::path& taken : {job, layers}) {
-    if (fs::exists(taken, failed)) {
-      return Error{ErrorCode::bad_argument, taken.string() + ": is there already; give another folder"};
-    }
-  }
   fs::create_directories(layers, failed);
   if (failed) {
     return Error{ErrorCode::io, layers.string() + ": cannot make the folder: " + failed.message()};
   }
-  std::vector<std::string> written;
   for (int layer = 0; layer < kLayers; ++layer) {
     const std::string path = (layers / fmt::format("layer_{:03}.tif", layer)).string();
     BilevelTiffPage page;
@@ -65,6 +57,24 @@ Result<int> run(const Options& options, const Command& command) {
   }
   GRAVURE_CHECK(write_file(job.string(), starter_job(Mode::rotary)));
   written.insert(written.begin(), job.string());
+  return {};
+}
+
+Result<int> run(const Options& options, const Command& command) {
+  const fs::path job = fs::path(options.folder) / "job.toml";
+  const fs::path layers = fs::path(options.folder) / "layers";
+  std::error_code failed;
+  for (const fs::path& taken : {job, layers}) {
+    if (fs::exists(taken, failed)) {
+      return Error{ErrorCode::bad_argument, taken.string() + ": is there already; give another folder"};
+    }
+  }
+  const bool made_folder = !fs::exists(options.folder, failed);
+  std::vector<std::string> written;
+  if (Result<void> done = write_starter(job, layers, written); !done) {  // so that it can be tried again
+    fs::remove_all(made_folder ? fs::path(options.folder) : layers, failed);
+    return done.error();
+  }
   if (command.json) {
     print_json({{"written", written}});
   } else {

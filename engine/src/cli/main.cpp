@@ -17,7 +17,7 @@ using gravure::Result;
 using gravure::cli::Command;
 
 extern "C" void on_signal(int) {
-  gravure::cli::cancel_token().cancel();
+  gravure::cli::interrupt();
 }
 
 void watch_signals() {
@@ -35,7 +35,7 @@ void watch_signals() {
 }
 
 int report(const Error& error, bool json) {
-  std::fprintf(stderr, "gravure: error: %s\n", error.message.c_str());
+  std::fprintf(stderr, "gravure: error: %s\n", gravure::cli::printable(error.message).c_str());
   if (json) {
     gravure::cli::print_json({{"error", {{"code", gravure::error_code_name(error.code)}, {"message", error.message}}}});
   }
@@ -55,18 +55,27 @@ void refuse_ambiguous(const CLI::App& app, const std::vector<std::string>& argum
     throw CLI::ValidationError(empty == arguments.begin() ? "the verb" : "the argument after " + *(empty - 1),
                                "is empty");
   }
-  const std::vector<const CLI::App*> known = app.get_subcommands([](const CLI::App*) { return true; });
-  const auto is_given = [&](const CLI::App* verb) { return verb->get_name() == arguments[0]; };
-  if (!arguments.empty() && arguments[0][0] != '-' && std::none_of(known.begin(), known.end(), is_given)) {
-    std::string verbs;
-    for (const CLI::App* verb : known) {
-      verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+  const CLI::App* level = &app;  // "motion" has verbs of its own
+  for (const std::string& argument : arguments) {
+    const std::vector<const CLI::App*> known = level->get_subcommands([](const CLI::App*) { return true; });
+    if (known.empty() || argument[0] == '-') {
+      return;
     }
-    throw CLI::ValidationError("\"" + arguments[0].substr(0, 40) + "\"", "is no verb; the verbs are " + verbs);
+    const auto given =
+        std::find_if(known.begin(), known.end(), [&](const CLI::App* verb) { return verb->get_name() == argument; });
+    if (given == known.end()) {
+      std::string verbs;
+      for (const CLI::App* verb : known) {
+        verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+      }
+      throw CLI::ValidationError("\"" + argument.substr(0, 40) + "\"", "is no verb; the verbs are " + verbs);
+    }
+    level = *given;
   }
 }
 
 int run(int argc, char** argv) {
+  watch_signals();
   Command command;
   CLI::App app("Raster gravure engine for rotational workpieces: image stacks to verified laser programs.", "gravure");
   app.set_version_flag("--version", "gravure " GRAVURE_VERSION);
@@ -98,7 +107,6 @@ int run(int argc, char** argv) {
     const std::string what = no_verb ? "a verb is missing" : error.what();
     return report({gravure::ErrorCode::bad_argument, what + "; see " + help_of(app)}, json);
   }
-  watch_signals();
   const Result<int> result = command.run();
   const int status = result ? result.value() : report(result.error(), command.json);
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

@@ -7,9 +7,18 @@
 #include "gravure/formats/plan_json.hpp"
 #include "job_loader.hpp"
 #include "plan_text.hpp"
+#include "program_files.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
+
+namespace {
+
+const char* order_name(LayerOrder order) {
+  return order == LayerOrder::sequence ? "sequence" : order == LayerOrder::cycle ? "cycle" : "hold";
+}
+
+}  // namespace
 
 std::string plan_text(const Plan& plan) {
   const auto number = [](const Rational& value) {
@@ -60,10 +69,18 @@ void add_plan(CLI::App& app, Command& command) {
     command.run = [&command, path]() -> Result<int> {
       const ImageFiles files;
       GRAVURE_TRY(const LoadedJob loaded, load_job(*path, files, false));
+      const ImageSettings& image = loaded.job.image;
       if (command.json) {
-        print(plan_to_json(loaded.plan) + "\n");
+        Json plan = Json::parse(plan_to_json(loaded.plan));
+        plan["image"] = {{"fires", polarity_name(image.fires)},
+                         {"lines_along", image.lines_along == LinesAlong::rows ? "rows" : "columns"},
+                         {"order", order_name(image.order)}};
+        print_json(plan);
       } else {
         print(plan_text(loaded.plan));
+        print(fmt::format("{:<10}{} fires, lines along {}, layers in order \"{}\"\n", "image",
+                          polarity_name(image.fires), image.lines_along == LinesAlong::rows ? "rows" : "columns",
+                          order_name(image.order)));
       }
       for (const std::string& warning : loaded.plan.warnings) {
         warn(warning);

@@ -62,8 +62,12 @@ Result<FoundImages> find_images(const ProgramHeader& header, const std::string& 
     any = any || !paths.back().empty();
     if (paths.back().empty()) {
       paths.back() = places_of(source, header, program_path, images_folder).front().lexically_normal().string();
-      if (found.missing.empty() || found.missing.back() != source.path) {
-        found.missing.push_back(source.path);
+      std::string sought = source.path;
+      for (const fs::path& place : places_of(source, header, program_path, images_folder)) {
+        sought += (sought == source.path ? ": not at " : ", nor at ") + place.lexically_normal().string();
+      }
+      if (found.missing.empty() || found.missing.back() != sought) {
+        found.missing.push_back(sought);
       }
     }
   }

@@ -14,8 +14,8 @@ namespace gravure::cli {
 /// Devices emulated in this process.
 DeviceFactory emulated_devices();
 
-/// The images a program was made from, found again. `missing` says which are not there; the others are still in the
-/// stack, and there is none only where all are missing.
+/// The images a program was made from, found again. `missing` says which are not there, and where they were sought; the
+/// others are still in the stack, and there is none only where all are missing.
 struct FoundImages {
   std::optional<LayerStack> stack;
   std::vector<std::string> missing;

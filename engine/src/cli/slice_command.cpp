@@ -95,11 +95,26 @@ Result<void> slice_levels(const Options& options, const LayerStack& stack, const
   return {};
 }
 
+/// A layer of an earlier, deeper slicing would be cut after these.
+Result<void> refuse_surplus(const Options& options) {
+  const std::string surplus = layer_path(options, options.levels);
+  std::error_code ignored;
+  if (fs::exists(surplus, ignored)) {
+    return Error{ErrorCode::bad_argument, surplus + ": is there from another slicing and would be cut after these " +
+                                              std::to_string(options.levels) + " layers: give an empty folder"};
+  }
+  return {};
+}
+
 Result<int> run(const Options& options, const Command& command) {
   const ImageFiles files;
   GRAVURE_TRY(const std::unique_ptr<ImageSource> map, files.open(options.map, 0));
   const ImageInfo info = map->info();
   GRAVURE_TRY(const LayerStack stack, stack_of(options, info));
+  GRAVURE_CHECK(refuse_surplus(options));
+  std::vector<std::byte> line(static_cast<std::size_t>(raster::packed_bytes(stack.pixels)));
+  LayerReader reader(stack, files, 0);
+  GRAVURE_CHECK(reader.read_lines(0, 0, 1, line));  // ends that do not fit the map show before there is a folder
   std::error_code failed;
   fs::create_directories(options.folder, failed);
   if (failed) {

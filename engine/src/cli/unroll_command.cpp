@@ -6,6 +6,7 @@
 
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
+#include "gravure/formats/tiff.hpp"
 #include "gravure/formats/tiff_writer.hpp"
 #include "gravure/twin/unroll.hpp"
 #include "program_files.hpp"
@@ -18,7 +19,7 @@ struct Options {
   std::string program;
   std::int64_t revolution = 0;
   std::string output;
-  std::string compression = "deflate";
+  std::string compression = "source";
 };
 
 TiffCompression compression_of(const std::string& name) {
@@ -28,6 +29,21 @@ TiffCompression compression_of(const std::string& name) {
                                                                {"deflate", TiffCompression::deflate},
                                                                {"g4", TiffCompression::g4}};
   return names.at(name);
+}
+
+/// That of a bilevel TIFF which this program could have written; else Deflate.
+TiffCompression compression_of_source(const std::string& path, std::int64_t page) {
+  const Result<TiffPageInfo> info =
+      is_tiff(path) ? BilevelTiffOpener().read_page_info(path, page) : Result<TiffPageInfo>(TiffPageInfo{});
+  if (!is_tiff(path) || !info || !info.value().bilevel()) {
+    return TiffCompression::deflate;
+  }
+  static const std::map<int, TiffCompression> known = {{1, TiffCompression::none},
+                                                       {4, TiffCompression::g4},
+                                                       {5, TiffCompression::lzw},
+                                                       {32773, TiffCompression::packbits}};
+  const auto found = known.find(info.value().compression);
+  return found == known.end() ? TiffCompression::deflate : found->second;
 }
 
 /// The size tags and the photometric sense of the source, where it is still there, so that the picture equals a layer
@@ -40,7 +56,7 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& opti
   BilevelTiffPage page;
   page.width = size.width;
   page.height = size.height;
-  page.compression = compression_of(options.compression);
+  page.compression = options.compression == "source" ? TiffCompression::deflate : compression_of(options.compression);
   page.x_dots_per_mm = rows ? along : across;
   page.y_dots_per_mm = rows ? across : along;
   if (options.revolution < 0 || options.revolution >= header.plan.job.revolutions) {
@@ -55,6 +71,9 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& opti
     page.x_dots_per_mm = image.value()->info().x_dots_per_mm;
     page.y_dots_per_mm = image.value()->info().y_dots_per_mm;
     page.zero_is_white = image.value()->info().zero_is_white;
+    if (options.compression == "source") {
+      page.compression = compression_of_source(path, source.page);
+    }
   }
   return page;
 }
@@ -112,8 +131,9 @@ void add_unroll(CLI::App& app, Command& command) {
       ->required()
       ->check(integer_from(0, kMostIndex));
   verb->add_option("-o,--output", options->output, "Bilevel TIFF to write")->required();
-  verb->add_option("--compression", options->compression, "Of the TIFF")
-      ->check(CLI::IsMember({"none", "packbits", "lzw", "deflate", "g4"}))
+  verb->add_option("--compression", options->compression,
+                   "Of the TIFF; source: that of the layer where it is a bilevel TIFF")
+      ->check(CLI::IsMember({"source", "none", "packbits", "lzw", "deflate", "g4"}))
       ->capture_default_str();
   add_work_options(*verb, command);
   verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });

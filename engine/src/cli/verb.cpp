@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <utility>
 
@@ -52,7 +53,7 @@ void print_json(const Json& document) {
 }
 
 void warn(const std::string& text) {
-  std::fprintf(stderr, "gravure: warning: %s\n", text.c_str());
+  std::fprintf(stderr, "gravure: warning: %s\n", printable(text).c_str());
 }
 
 Json json_integer(const Integer& value) {
@@ -67,9 +68,48 @@ Json json_ratio(const Rational& value) {
   return {{"num", json_integer(numerator_of(value))}, {"den", json_integer(denominator_of(value))}};
 }
 
+namespace {
+
+CancelToken the_token;
+std::atomic<bool> token_watched{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "interrupt() runs in a signal handler");
+
+}  // namespace
+
 CancelToken& cancel_token() {
-  static CancelToken token;
-  return token;
+  token_watched = true;
+  return the_token;
+}
+
+void interrupt() {
+  if (!token_watched) {
+    ::_exit(exit_status(ErrorCode::cancelled));
+  }
+  the_token.cancel();
+}
+
+std::string printable(std::string_view text) {
+  // The JSON writer knows UTF-8: what it cannot read becomes U+FFFD.
+  const std::string quoted = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string clean = Json::parse(quoted).get<std::string>();
+  std::string shown;
+  for (std::size_t i = 0; i < clean.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(clean[i]);
+    const auto next = i + 1 < clean.size() ? static_cast<unsigned char>(clean[i + 1]) : 0U;
+    const auto after = i + 2 < clean.size() ? static_cast<unsigned char>(clean[i + 2]) : 0U;
+    const bool c1 = byte == 0xC2 && next >= 0x80 && next < 0xA0;
+    // U+200E to U+200F, U+202A to U+202E, U+2066 to U+2069 turn the direction of writing.
+    const bool turns = byte == 0xE2 && ((next == 0x80 && (after == 0x8E || after == 0x8F)) ||
+                                        (next == 0x80 && after >= 0xAA && after <= 0xAE) ||
+                                        (next == 0x81 && after >= 0xA6 && after <= 0xA9));
+    if (c1 || turns || (byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7F) {
+      shown += '?';
+      i += c1 ? 1 : turns ? 2 : 0;
+    } else {
+      shown += clean[i];
+    }
+  }
+  return shown;
 }
 
 ProgressBar::ProgressBar(std::string what) : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1) {}

@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "gravure/core/error.hpp"
 #include "gravure/core/exact.hpp"
@@ -51,8 +52,13 @@ void warn(const std::string& text);
 Json json_integer(const Integer& value);
 Json json_ratio(const Rational& value);
 
-/// Set by Ctrl-C.
+/// Set by Ctrl-C. Asking for it says that somebody will look at it from now on.
 CancelToken& cancel_token();
+/// What Ctrl-C does: sets the token where somebody looks at it, else ends the program with the status of `cancelled`.
+void interrupt();
+
+/// `text` without what a terminal would obey: control characters but line ends, and bytes that are no UTF-8.
+std::string printable(std::string_view text);
 
 /// A progress bar on standard error, on a terminal only.
 class ProgressBar final : public Progress {

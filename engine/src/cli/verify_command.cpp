@@ -98,6 +98,7 @@ Json json_of(const VerifyReport& report, const ProgramHeader& header, bool every
           {"fired_pixels", json_integer(Integer(report.fired_pixels))},
           {"pixels", json_integer(Integer(report.pixels))},
           {"images_compared", report.images_compared},
+          {"uncompared_lines", report.uncompared_lines},
           {"wrong_pixels", report.wrong_pixels},
           {"first_wrong_pixel", wrong},
           {"seam",

@@ -136,16 +136,30 @@ Result<void> write_file(const std::string& path, std::string_view content) {
   return output.commit();
 }
 
+Error open_error(const std::string& path, int reason) {
+  const bool mendable = reason == ENOENT || reason == ENOTDIR || reason == EACCES || reason == EISDIR ||
+                        reason == ELOOP || reason == ENAMETOOLONG || reason == ENXIO;
+  const char* remedy = reason == ENOENT || reason == ENOTDIR ? ": check the path"
+                       : reason == EACCES                    ? ": check its permissions"
+                                                             : "";
+  return {mendable ? ErrorCode::bad_file : ErrorCode::io, path + ": cannot open: " + std::strerror(reason) + remedy};
+}
+
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const auto too_large = [&] {
+    return Error{ErrorCode::bad_file, path + ": larger than the " + std::to_string(max_bytes) + " bytes allowed here"};
+  };
+  // O_NONBLOCK: a pipe named by mistake is refused below instead of waiting for a writer.
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.valid()) {
-    Error error = system_error("cannot open", path);
-    error.code = ErrorCode::bad_file;  // an input that is not there is the user's to mend
-    return error;
+    return open_error(path, errno);
   }
   struct stat status = {};
-  if (::fstat(file.get(), &status) != 0 || S_ISDIR(status.st_mode)) {
-    return Error{ErrorCode::bad_file, path + ": is not a file"};
+  if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
+    return Error{ErrorCode::bad_file, path + ": is not a regular file"};
+  }
+  if (static_cast<std::uint64_t>(status.st_size) > max_bytes) {
+    return too_large();
   }
   std::string content;
   char buffer[65536];
@@ -161,9 +175,8 @@ Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
       return content;
     }
     content.append(buffer, static_cast<std::size_t>(got));
-    if (content.size() > max_bytes) {
-      return Error{ErrorCode::bad_file,
-                   path + ": larger than the " + std::to_string(max_bytes) + " bytes allowed here"};
+    if (content.size() > max_bytes) {  // it grew meanwhile
+      return too_large();
     }
   }
 }

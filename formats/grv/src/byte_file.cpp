@@ -1,4 +1,5 @@
 #include "byte_file.hpp"
+#include "gravure/core/file_output.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -104,12 +105,12 @@ Result<std::unique_ptr<ByteFile>> open_file(const std::string& path, OpenFor pur
   const int access = purpose == OpenFor::writing ? O_RDWR : O_RDONLY;
   const int fd = ::open(path.c_str(), access | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) {
-    return Error{ErrorCode::io, shown_path + ": cannot open: " + std::strerror(errno)};
+    return open_error(shown_path, errno);
   }
   auto file = std::make_unique<DiskFile>(fd, shown_path);
   struct stat status = {};
   if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
-    return Error{ErrorCode::io, shown_path + ": is not a regular file"};
+    return Error{ErrorCode::bad_file, shown_path + ": is not a regular file"};
   }
   return std::unique_ptr<ByteFile>(std::move(file));
 }

@@ -1,4 +1,5 @@
 #include "gravure/formats/image_kind.hpp"
+#include "gravure/core/file_output.hpp"
 
 #include <sys/stat.h>
 
@@ -53,9 +54,7 @@ const char* image_kind_name(ImageKind kind) noexcept {
 Result<ImageKind> image_kind(const std::string& path) {
   struct stat status = {};
   if (::stat(path.c_str(), &status) != 0) {
-    const int reason = errno;
-    const bool missing = reason == ENOENT || reason == ENOTDIR;
-    return Error{missing ? ErrorCode::bad_file : ErrorCode::io, path + ": cannot open: " + std::strerror(reason)};
+    return open_error(path, errno);
   }
   if (!S_ISREG(status.st_mode)) {
     return Error{ErrorCode::bad_file,
@@ -63,7 +62,7 @@ Result<ImageKind> image_kind(const std::string& path) {
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    return Error{ErrorCode::io, path + ": cannot open: " + std::strerror(errno)};
+    return open_error(path, errno);
   }
   char bytes[8] = {};
   file.read(bytes, sizeof bytes);

@@ -3,7 +3,9 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <set>
 
@@ -51,17 +53,20 @@ class Glob {
  public:
   explicit Glob(const std::string& pattern) {
     names_left = kMostNames;
+    closed_folder.clear();
     found_.gl_opendir = [](const char* path) -> void* { return ::opendir(path); };
     found_.gl_readdir = [](void* folder) { return names_left-- > 0 ? ::readdir(static_cast<DIR*>(folder)) : nullptr; };
     found_.gl_closedir = [](void* folder) { static_cast<void>(::closedir(static_cast<DIR*>(folder))); };
     found_.gl_stat = ::stat;
     found_.gl_lstat = ::lstat;
-    status_ = ::glob(pattern.c_str(), GLOB_NOSORT | GLOB_ALTDIRFUNC, nullptr, &found_);
+    status_ = ::glob(pattern.c_str(), GLOB_NOSORT | GLOB_ALTDIRFUNC, &on_error, &found_);
   }
   Glob(const Glob&) = delete;
   Glob& operator=(const Glob&) = delete;
   ~Glob() { ::globfree(&found_); }
   bool gave_up() const { return names_left < 0; }
+  /// "FOLDER: Permission denied" where one could not be listed: what it holds is not known.
+  const std::string& unlisted() const { return closed_folder; }
   std::vector<std::string> paths() const {
     return status_ == 0 ? std::vector<std::string>(found_.gl_pathv, found_.gl_pathv + found_.gl_pathc)
                         : std::vector<std::string>();
@@ -70,12 +75,20 @@ class Glob {
   static constexpr std::int64_t kMostNames = 1'000'000;
 
  private:
+  static int on_error(const char* path, int reason) {
+    if (closed_folder.empty() && reason != ENOENT && reason != ENOTDIR && reason != ELOOP) {
+      closed_folder = std::string(path) + ": " + std::strerror(reason);
+    }
+    return 0;
+  }
   static thread_local std::int64_t names_left;  // glob() hands no context to its callbacks
+  static thread_local std::string closed_folder;
   ::glob_t found_ = {};
   int status_;
 };
 
 thread_local std::int64_t Glob::names_left = 0;
+thread_local std::string Glob::closed_folder;
 
 /// What a pattern matches, without folders; the error says what is wrong where that is nothing.
 Result<std::vector<std::string>> matches_of(const std::string& folder, const std::string& pattern) {
@@ -91,6 +104,9 @@ Result<std::vector<std::string>> matches_of(const std::string& folder, const std
     return Error{ErrorCode::bad_file, shown + "looks through more than " + std::to_string(Glob::kMostNames) +
                                           " names: name the folder of the images"};
   }
+  if (!glob.unlisted().empty()) {
+    return Error{ErrorCode::bad_file, shown + "cannot be looked for in " + glob.unlisted() + ": check its permissions"};
+  }
   std::vector<std::string> paths = glob.paths();
   const bool any = !paths.empty();
   std::erase_if(paths, [](const std::string& path) {
@@ -105,6 +121,15 @@ Result<std::vector<std::string>> matches_of(const std::string& folder, const std
   }
   std::sort(paths.begin(), paths.end(), natural_less);
   return paths;
+}
+
+/// The same for every way to write the path of one directory entry; links to one file are different entries.
+std::string identity_of(const std::string& path) {
+  const std::filesystem::path entry(path);
+  std::error_code failed;
+  const std::filesystem::path parent = entry.parent_path();
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(parent.empty() ? "." : parent, failed);
+  return failed ? path : (folder / entry.filename()).string();
 }
 
 }  // namespace
@@ -140,7 +165,7 @@ Result<std::vector<std::string>> expand_patterns(const std::string& folder, cons
       continue;
     }
     for (const std::string& path : matches.value()) {
-      if (seen.insert(path).second) {
+      if (seen.insert(identity_of(path)).second) {
         files.push_back(path);
       }
     }

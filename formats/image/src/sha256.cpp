@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "gravure/core/file_output.hpp"
 #include "gravure/formats/image_files.hpp"
 #if defined(__x86_64__)
 #include <cpuid.h>
@@ -192,7 +193,7 @@ Result<std::string> sha256_file(const std::string& path) {
   }
   const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rbe"));
   if (file == nullptr) {
-    return Error{ErrorCode::io, path + ": cannot open: " + std::strerror(errno)};
+    return open_error(path, errno);
   }
   constexpr std::size_t kChunk = std::size_t{256} << 10;
   const auto buffer = std::make_unique<unsigned char[]>(kChunk);

@@ -51,7 +51,8 @@ Suggestion suggest(std::string_view wrong, std::span<const Candidate> candidates
     return {};
   }
   const bool is_near = nearest_distance <= std::max<std::size_t>(2, nearest->word.size() / 3);
-  return {is_near ? "; did you mean " + nearest->shown + "?" : "; the nearest known one is " + nearest->shown, is_near};
+  return {is_near ? "; did you mean " + nearest->shown + "?" : "; the nearest known one is " + nearest->shown,
+          is_near ? std::string(nearest->word) : "", is_near};
 }
 
 }  // namespace gravure::job_file

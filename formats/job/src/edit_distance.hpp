@@ -17,7 +17,8 @@ struct Candidate {
 };
 
 struct Suggestion {
-  std::string text;  ///< "; did you mean seed_hz?" where it is near, "; the nearest known one is seed_hz" where not
+  std::string text;     ///< "; did you mean seed_hz?" where it is near, "; the nearest known one is seed_hz" where not
+  std::string nearest;  ///< the word, where it is near
   bool is_near = false;
 };
 

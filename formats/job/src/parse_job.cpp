@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -23,14 +24,14 @@ bool contains(std::span<const std::string_view> words, std::string_view word) {
 }
 
 /// What to say of a key nobody knows: the section it belongs to, or the key it resembles.
-std::string key_advice(std::string_view section, std::string_view key, const Violations& violations) {
+Suggestion key_advice(std::string_view section, std::string_view key, const Violations& violations) {
   if (violations.is_full()) {
-    return "";  // will not be shown
+    return {};  // will not be shown
   }
   std::vector<Candidate> candidates;
   for (const KeySpec& spec : key_table()) {
     if (spec.key == key) {
-      return "; it belongs in [" + std::string(spec.section) + "]";
+      return {"; it belongs in [" + std::string(spec.section) + "]", "", false};
     }
     if (spec.section == section) {
       candidates.push_back({spec.key, std::string(spec.key)});
@@ -38,14 +39,14 @@ std::string key_advice(std::string_view section, std::string_view key, const Vio
   }
   const Suggestion here = suggest(key, candidates);
   if (here.is_near) {
-    return here.text;
+    return here;
   }
   std::vector<Candidate> others;
   for (const KeySpec& spec : key_table()) {
     others.push_back({spec.key, "[" + std::string(spec.section) + "] " + std::string(spec.key)});
   }
   const Suggestion elsewhere = suggest(key, others);
-  return elsewhere.is_near || candidates.empty() ? elsewhere.text : here.text;
+  return {elsewhere.is_near || candidates.empty() ? elsewhere.text : here.text, "", false};
 }
 
 /// Reads one document into a Job, gathering violations.
@@ -90,18 +91,22 @@ class Reader {
     } else {
       job_.places.emplace(section.name, section.at);
       for (const Entry& entry : section.entries) {
-        job_.places.emplace(section.name + "." + entry.key, entry.at);
+        job_.places.emplace(section.name + "." + entry.key, entry.value.at);
         read_entry(section, entry);
       }
     }
   }
 
-  std::string section_advice(const std::string& wrong) const {
+  std::string section_advice(const std::string& wrong) {
     std::vector<Candidate> names;
     for (const std::string_view name : section_names()) {
       names.push_back({name, bracketed(name)});
     }
-    return violations_.is_full() ? "" : suggest(wrong, names).text;
+    const Suggestion advice = violations_.is_full() ? Suggestion() : suggest(wrong, names);
+    if (advice.is_near) {
+      meant_.insert(advice.nearest);
+    }
+    return advice.text;
   }
 
   void report_loose_value(const Section& section, bool is_known) {
@@ -111,15 +116,17 @@ class Reader {
                                       std::string(kind_name(section.value.kind)));
     } else {
       violations_.add(section.at,
-                      name + ": unknown key outside every section" + key_advice("", section.name, violations_));
+                      name + ": unknown key outside every section" + key_advice("", section.name, violations_).text);
     }
   }
 
   void read_entry(const Section& section, const Entry& entry) {
     const KeySpec* spec = find_key(section.name, entry.key);
     if (spec == nullptr) {
+      const Suggestion advice = key_advice(section.name, entry.key, violations_);
       violations_.add(entry.at, bracketed(section.name) + " " + printable(entry.key) + " = " + entry.value.shown +
-                                    ": unknown key" + key_advice(section.name, entry.key, violations_));
+                                    ": unknown key" + advice.text);
+      meant_.insert(section.name + "." + advice.nearest);
     } else if (check(*spec, entry.value)) {
       spec->store(job_, entry.value);
     }
@@ -229,6 +236,9 @@ class Reader {
   void report_missing() {
     for (const std::string_view name : section_names()) {
       const Section* section = document_.find(name);
+      if (section == nullptr && meant_.count(std::string(name)) != 0) {
+        continue;  // said where it is misspelt
+      }
       if (section == nullptr) {
         violations_.add(document_.end, "section " + bracketed(name) + " is missing: it needs " + required_keys(name));
       } else if (section->is_table) {
@@ -249,7 +259,8 @@ class Reader {
 
   void report_missing_keys(const Section& section) {
     for (const KeySpec& spec : key_table()) {
-      if (spec.section == section.name && spec.presence == Presence::required && section.find(spec.key) == nullptr) {
+      if (spec.section == section.name && spec.presence == Presence::required && section.find(spec.key) == nullptr &&
+          meant_.count(section.name + "." + std::string(spec.key)) == 0) {
         const bool is_polarity = spec.key == "fires";
         violations_.add(section.at,
                         bracketed(section.name) + " " + std::string(spec.key) + " is missing: give " +
@@ -261,6 +272,7 @@ class Reader {
 
   const Document& document_;
   Job job_;
+  std::set<std::string> meant_;  ///< sections and keys ("laser.seed_hz") that a misspelt one stands for
   Violations violations_;
 };
 

@@ -169,6 +169,7 @@ Result<void> check_geometry(const std::string& where, const OIIO::ImageSpec& spe
 OiioOpener::OiioOpener() {
   // Sizes are checked against the file itself (header_facts.hpp); this limit would refuse honest large rollers.
   OIIO::attribute("limits:imagesize_MB", std::numeric_limits<int>::max());
+  OIIO::attribute("threads", 1);       // a pool that cannot start ends the process (a limit on processes, a container)
   OIIO::attribute("exr_threads", -1);  // none of its own: the caller has workers, and each thread holds its own rows
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "gravure/core/file_output.hpp"
 #include "gravure/formats/tiff.hpp"
 
 namespace gravure {
@@ -142,9 +143,7 @@ bool same_file(const struct stat& a, const struct stat& b) {
 Result<struct stat> status_of(const ReadOnlyFile& file, const std::string& path) {
   struct stat status = {};
   if (file.fd() < 0 || ::fstat(file.fd(), &status) != 0) {
-    const int reason = errno;
-    const bool missing = reason == ENOENT || reason == ENOTDIR;
-    return Error{missing ? ErrorCode::bad_file : ErrorCode::io, path + ": cannot open: " + std::strerror(reason)};
+    return open_error(path, errno);
   }
   if (!S_ISREG(status.st_mode)) {
     return Error{ErrorCode::bad_file,

@@ -199,9 +199,10 @@ TEST(ReadFile, StopsOnAFileWithoutEnd) {
   EXPECT_EQ(zeros.error().code, ErrorCode::bad_file);
 }
 
-TEST(ReadFile, RefusesFoldersAndWhatIsNotThere) {
+TEST(ReadFile, RefusesFoldersPipesAndWhatIsNotThere) {
   const TempFolder folder;
-  for (const std::string& path : {folder.path(), folder / "missing", std::string()}) {
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  for (const std::string& path : {folder.path(), folder / "pipe", folder / "missing", std::string()}) {
     const Result<std::string> got = read_file(path, 10);
     ASSERT_FALSE(got) << path;
     EXPECT_EQ(got.error().code, ErrorCode::bad_file);

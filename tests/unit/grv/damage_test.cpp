@@ -132,7 +132,7 @@ TEST(GrvDamage, IsNoticedForAppendedBytes) {
 TEST(GrvDamage, IsNoticedForOtherFilesFoldersAndPipes) {
   const Folder folder;
   const std::string path = folder.file("a.grv");
-  expect_refused(path, ErrorCode::io, "cannot open");
+  expect_refused(path, ErrorCode::bad_file, "cannot open");
   save(path, {});
   expect_refused(path, ErrorCode::bad_file, "only 0 bytes");
   save(path, Bytes(4000, std::byte{'x'}));
@@ -141,9 +141,9 @@ TEST(GrvDamage, IsNoticedForOtherFilesFoldersAndPipes) {
   ASSERT_GE(H5Fclose(plain), 0);
   expect_refused(path, ErrorCode::bad_file, "is not a gravure program");
   std::filesystem::create_directory(folder.file("b.grv"));
-  expect_refused(folder.file("b.grv"), ErrorCode::io, "is not a regular file");
+  expect_refused(folder.file("b.grv"), ErrorCode::bad_file, "is not a regular file");
   ASSERT_EQ(::mkfifo(folder.file("c.grv").c_str(), 0600), 0);
-  expect_refused(folder.file("c.grv"), ErrorCode::io, "is not a regular file");
+  expect_refused(folder.file("c.grv"), ErrorCode::bad_file, "is not a regular file");
 }
 
 TEST(GrvDamage, IsAVersionMismatchForAnotherFormatVersion) {

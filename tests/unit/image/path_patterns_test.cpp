@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <random>
@@ -99,6 +100,31 @@ TEST(PathPatterns, NameEachPatternThatMatchesNothing) {
   EXPECT_NE(files.error().message.find("\"*.png\""), std::string::npos) << files.error().message;
   EXPECT_NE(files.error().message.find("\"none/*.tif\""), std::string::npos) << files.error().message;
   EXPECT_EQ(files.error().message.find("a.tif\""), std::string::npos) << files.error().message;
+}
+
+TEST(PathPatterns, TakeOneFileOnceHoweverItsPathIsWritten) {
+  const TempFolder folder;
+  put_file(folder / "a.tif", "x");
+  std::filesystem::create_symlink("a.tif", folder / "b.tif");
+  EXPECT_EQ(expand_patterns(folder.path(), {"a.tif", "./a.tif", "*.tif"}).value(),
+            (Names{folder / "a.tif", folder / "b.tif"}))
+      << "a link is an entry of its own: so one mask stands for several layers";
+}
+
+TEST(PathPatterns, SayWhichFolderCannotBeListed) {
+  if (geteuid() == 0) {
+    GTEST_SKIP() << "root may list every folder";
+  }
+  const TempFolder folder;
+  std::filesystem::create_directories(folder / "open");
+  std::filesystem::create_directories(folder / "closed");
+  put_file(folder / "open/a.tif", "x");
+  put_file(folder / "closed/b.tif", "x");
+  std::filesystem::permissions(folder / "closed", std::filesystem::perms::none);
+  const auto files = expand_patterns(folder.path(), {"*/*.tif"});
+  std::filesystem::permissions(folder / "closed", std::filesystem::perms::owner_all);
+  ASSERT_FALSE(files) << "a layer would be left out of the cut";
+  EXPECT_NE(files.error().message.find("closed: Permission denied"), std::string::npos) << files.error().message;
 }
 
 TEST(PathPatterns, SayWhenAPatternMatchesOnlyFolders) {

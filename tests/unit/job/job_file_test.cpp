@@ -168,13 +168,15 @@ TEST(Job, KnowsWhereEachKeyStands) {
   const Result<Job> result = parse_job(text, "roller/job.toml");
   ASSERT_TRUE(result) << result.error().message;
   const Job& job = result.value();
-  const auto line_of = [&](const std::string& what) {
-    return std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<long>(text.find(what)), '\n'));
+  const auto place_of = [&](const std::string& what) {
+    const auto at = static_cast<std::ptrdiff_t>(text.find(what));
+    const auto line = std::count(text.begin(), text.begin() + at, '\n') + 1;
+    const auto column = at - static_cast<std::ptrdiff_t>(text.rfind('\n', static_cast<std::size_t>(at)));
+    return "roller/job.toml:" + std::to_string(line) + ":" + std::to_string(column) + ": ";
   };
-  EXPECT_EQ(job.place_of("laser.seed_hz"), "roller/job.toml:" + line_of("seed_hz") + ":1: ");
-  EXPECT_EQ(job.place_of("limits.seam_um"), "roller/job.toml:" + line_of("seam_um") + ":1: ");
-  EXPECT_EQ(job.place_of("image.pixels_per_line"), "roller/job.toml:" + line_of("[image]") + ":1: ")
-      << "left out: where its section stands";
+  EXPECT_EQ(job.place_of("laser.seed_hz"), place_of("82_000_000"));
+  EXPECT_EQ(job.place_of("limits.seam_um"), place_of("0.5"));
+  EXPECT_EQ(job.place_of("image.pixels_per_line"), place_of("[image]")) << "left out: where its section stands";
   EXPECT_EQ(Job().place_of("laser.seed_hz"), "") << "a job made in memory has no places";
 }
 

@@ -32,6 +32,9 @@ class FileOutput {
 
 /// Writes `content` to `path`, whole or not at all.
 Result<void> write_file(const std::string& path, std::string_view content);
+/// Why an input could not be opened, from errno: bad_file where the user can mend it (not there, not allowed, no file
+/// at all), io where the system fails.
+Error open_error(const std::string& path, int reason);
 /// Reads a file of at most `max_bytes`; bad_file beyond or where it cannot be opened, io where reading breaks off.
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes);
 
