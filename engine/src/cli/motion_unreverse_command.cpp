@@ -260,7 +260,8 @@ void add_motion_unreverse(CLI::App& motion, Command& command) {
       add_verb(motion, command, "unreverse", "Remove unintended reversals of the rotary axes of a program");
   const auto options = std::make_shared<UnreverseOptions>();
   verb->add_option("PROGRAM", options->program, "G-code with A and C words in degrees")->required();
-  verb->add_option("--tolerance-deg", options->tolerance_deg, "Reversals up to this go; no block moves by more")
+  verb->add_option("--tolerance-deg", options->tolerance_deg,
+                   "Reversals up to this go; no block moves by more, but for turns clear of --surface")
       ->required();
   verb->add_option("--control-points", options->control_points, "Of each piece to begin with")->capture_default_str();
   add_tool_options(*verb, *options);
