@@ -72,7 +72,7 @@ std::vector<std::size_t> intended_turns(std::span<const double> angle, double pr
     low = angle[k] < angle[low] ? k : low;
     high = angle[k] > angle[high] ? k : high;
     if (sense >= 0 && angle[high] - angle[k] > prominence) {  // it has turned down for good
-      if (sense != 0 && high > turns.back()) {  // what comes before the first such stretch is smaller
+      if (sense != 0 && high > turns.back()) {                // what comes before the first such stretch is smaller
         turns.push_back(high);
       }
       sense = -1;
