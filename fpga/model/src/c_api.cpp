@@ -93,11 +93,13 @@ void gravure_fpga_board_step(gravure_fpga_board* board, const gravure_fpga_board
   in.in_valid = inputs->in_valid != 0;
   in.start = inputs->start != 0;
   in.interlock = inputs->interlock != 0;
+  in.index = inputs->index != 0;
   in.address = inputs->address;
   in.in_data = inputs->in_data;
   in.write_data = inputs->write_data;
   const fpga::Synchro::Outputs out = board->board.step(in);
-  *outputs = {pin(out.a), pin(out.b), pin(out.gate), pin(out.scan), out.fault, out.read_data};
+  *outputs = {pin(out.a), pin(out.b),    pin(out.gate), pin(out.scan),
+              out.fault,  out.read_data, pin(out.a_1),  pin(out.b_1)};
 }
 
 void gravure_fpga_board_destroy(gravure_fpga_board* board) {

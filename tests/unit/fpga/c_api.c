@@ -33,13 +33,16 @@ static void c_write(gravure_fpga_board* board, uint8_t address, uint32_t data, g
 int c_read(int fifo_bits, uint8_t address, uint32_t* data) {
   gravure_fpga_board_inputs in;
   gravure_fpga_board_outputs out;
+  int clock;
   gravure_fpga_board* board = gravure_fpga_board_create(fifo_bits);
   if (board == NULL) {
     return 0;
   }
   memset(&in, 0, sizeof in);
   in.address = address;
-  gravure_fpga_board_step(board, &in, &out);
+  for (clock = 0; clock < 6; ++clock) {
+    gravure_fpga_board_step(board, &in, &out);
+  }
   *data = out.read_data;
   gravure_fpga_board_destroy(board);
   return 1;

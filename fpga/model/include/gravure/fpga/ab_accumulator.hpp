@@ -50,6 +50,8 @@ class AbAccumulator {
   }
 
  private:
+  friend class AxisTrack;
+
   struct Now {
     bool clear = false;
     bool due = false;

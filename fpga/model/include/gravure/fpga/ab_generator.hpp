@@ -20,6 +20,7 @@ class AbGenerator {
     bool b = false;
     bool refused = false;  ///< the last load would have broken a rule and changed nothing
     bool busy = false;     ///< a load is under way, another would be refused
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   /// Clocks from the one that takes a load, without the clock itself: AbCounter's pins after its clock c show just
@@ -51,6 +52,8 @@ class AbGenerator {
   }
 
  private:
+  friend class AxisTrack;
+
   AbPacer pacer_;
   AbAccumulator accumulator_;
   AbPacer::Outputs word_;

@@ -43,6 +43,8 @@ class AbPacer {
   Outputs step(const Inputs& inputs) noexcept;
 
  private:
+  friend class AxisTrack;
+
   /// A load on its way into force.
   struct Load {
     std::uint64_t step = 0;

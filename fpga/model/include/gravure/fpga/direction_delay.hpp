@@ -25,6 +25,7 @@ class DirectionDelay {
     bool window = false;
     bool first = false;
     bool last = false;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& in) noexcept {
@@ -59,6 +60,8 @@ class DirectionDelay {
   }
 
  private:
+  friend class SynchroEvents;
+
   bool line_reverse_ = false;
   bool waiting_ = false;
   std::uint16_t left_ = 0;

@@ -23,6 +23,7 @@ class FaultLatch {
     std::uint8_t fault = 0;
     std::uint8_t seen = 0;  ///< bit n - 1: fault n
     bool any = false;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& in) noexcept {

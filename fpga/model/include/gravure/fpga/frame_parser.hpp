@@ -39,6 +39,7 @@ class FrameParser {
     bool odd = false;              ///< its number, counted from the job's first line, is odd
     std::uint32_t revolution = 0;  ///< that must come next
     std::uint32_t line = 0;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& now) noexcept;

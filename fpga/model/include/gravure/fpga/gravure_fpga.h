@@ -72,6 +72,7 @@ typedef struct gravure_fpga_board_inputs {
   uint8_t in_data;
   uint8_t start; /* the line-start strobe */
   uint8_t interlock;
+  uint8_t index; /* of the encoder */
 } gravure_fpga_board_inputs;
 
 typedef struct gravure_fpga_board_outputs {
@@ -80,7 +81,9 @@ typedef struct gravure_fpga_board_outputs {
   uint8_t gate;
   uint8_t scan;
   uint8_t fault;      /* 0 none, 1 sequence, 2 checksum, 3 shape, 4 underrun, 5 host silence, 6 interlock */
-  uint32_t read_data; /* of the register at address, one seed clock later */
+  uint32_t read_data; /* of the register at address, two seed clocks later */
+  uint8_t a_1;        /* the second axis */
+  uint8_t b_1;
 } gravure_fpga_board_outputs;
 
 typedef struct gravure_fpga_board gravure_fpga_board;

@@ -28,6 +28,7 @@ class IncrementSchedule {
     bool full = false;
     bool overflow = false;  ///< sticky until flush
     std::uint32_t increment = 0;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& in) noexcept {
@@ -58,6 +59,8 @@ class IncrementSchedule {
   }
 
  private:
+  friend class SynchroEvents;
+
   TrialFifo<std::uint64_t> segments_;
   TrialFifo<std::uint64_t>::Outputs list_;
   std::uint32_t left_ = 0;

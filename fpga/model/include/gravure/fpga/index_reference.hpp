@@ -25,6 +25,7 @@ class IndexReference {
     std::uint32_t error = 0;   ///< 18 bits, two's complement: clocks the last index was late
     bool referenced = false;
     bool lost = false;  ///< an index was missing or out of place; sticky until clear
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& in) noexcept {
@@ -74,6 +75,8 @@ class IndexReference {
   }
 
  private:
+  friend class SynchroEvents;
+
   static std::int64_t signed_of(std::uint64_t value, unsigned bits) noexcept {
     return static_cast<std::int64_t>(value << (64U - bits)) >> (64U - bits);
   }

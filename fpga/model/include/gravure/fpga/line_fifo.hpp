@@ -30,6 +30,7 @@ class TrialFifo {
     bool almost_empty = true;  ///< level was low_level or less, one clock later
     bool full = false;
     bool overflow = false;  ///< sticky until flush
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   explicit TrialFifo(int address_bits) : memory_(std::size_t{1} << static_cast<unsigned>(address_bits)) {}

@@ -25,6 +25,7 @@ class LineSequencer {
     bool first = false;
     bool last = false;
     bool running = false;  ///< a line has slots left
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& inputs) noexcept {

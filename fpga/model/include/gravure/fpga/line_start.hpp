@@ -21,6 +21,7 @@ class LineStart {
   struct Outputs {
     bool slots_run = false;  ///< combinational in run and timed: as for the clock that comes
     bool started = false;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   /// slots_run for inputs that stand between two clocks.
@@ -45,6 +46,8 @@ class LineStart {
   }
 
  private:
+  friend class SynchroEvents;
+
   bool counting_ = false;
   std::uint32_t tick_ = 0;
   bool arrives_ = false;

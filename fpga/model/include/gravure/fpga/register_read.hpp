@@ -22,6 +22,7 @@ class RegisterRead {
   };
   struct Outputs {
     std::uint32_t read_data = 0;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   explicit RegisterRead(int fifo_bits) noexcept : fifo_bits_(fifo_bits) {}

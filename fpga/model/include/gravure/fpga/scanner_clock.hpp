@@ -18,6 +18,7 @@ class ScannerClock {
   };
   struct Outputs {
     bool scan = false;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& in) noexcept {

@@ -45,6 +45,7 @@ class Settings {
     std::uint32_t schedule_increment = kScheduleIncrementRegister.reset;
     std::uint32_t schedule_seeds = kScheduleSeedsRegister.reset;
     bool refused = false;  ///< a write changed nothing; sticky until clear
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   /// Clocks that the settings of lines must stand before slots may run.

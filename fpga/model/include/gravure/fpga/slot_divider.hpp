@@ -18,6 +18,7 @@ class SlotDivider {
   };
   struct Outputs {
     bool slot = false;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& in) noexcept {
@@ -43,6 +44,8 @@ class SlotDivider {
   }
 
  private:
+  friend class SynchroEvents;
+
   std::uint32_t count_ = 1;   ///< clock of the slot, from 1
   std::uint32_t length_ = 0;  ///< 17 bits
   bool begins_ = true;

@@ -29,6 +29,7 @@ class SlotGate {
     bool byte_take = false;
     bool underrun = false;  ///< sticky until clear
     bool dark = false;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& in) noexcept {

@@ -48,6 +48,7 @@ class Synchro {
     std::uint8_t address = 0;
     std::uint8_t in_data = 0;
     std::uint32_t write_data = 0;
+    friend bool operator==(const Inputs&, const Inputs&) = default;
   };
   struct Outputs {
     bool a = false;
@@ -62,8 +63,12 @@ class Synchro {
 
   explicit Synchro(int fifo_bits, int schedule_bits = 8);
   Outputs step(const Inputs& in) noexcept;
+  /// As the register of that name has it.
+  std::uint32_t fifo_level() const noexcept { return now_.bits.level; }
 
  private:
+  friend class SynchroEvents;
+
   /// What every block showed after the last clock: all that flows between blocks comes from flip-flops.
   struct Wires {
     Settings::Outputs settings;
@@ -87,6 +92,7 @@ class Synchro {
     bool line_missing = false;
     bool was_missing = false;
     bool stream_error = false;
+    friend bool operator==(const Wires&, const Wires&) = default;
   };
 
   AbGenerator::Inputs axis_inputs(std::size_t axis, bool rst) const noexcept;

@@ -16,6 +16,7 @@ class Watchdog {
   };
   struct Outputs {
     bool expired = false;
+    friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& in) noexcept {
@@ -33,6 +34,8 @@ class Watchdog {
   }
 
  private:
+  friend class SynchroEvents;
+
   std::uint32_t silent_ = 0;
   Outputs out_;
 };
