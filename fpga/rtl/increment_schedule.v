@@ -27,7 +27,8 @@ module increment_schedule #(
   reg [W-1:0] left;  // clocks until the next segment is due
   wire segment_valid;
   wire [BITS+W-1:0] segment;
-  wire due = run && left <= 1;
+  reg over;             // left is 1 or less
+  wire due = run && over;
   wire next = due && segment_valid;
   /* verilator lint_off PINCONNECTEMPTY */
   line_fifo #(.W(BITS + W), .ADDRESS_BITS(ADDRESS_BITS)) segments (
@@ -40,6 +41,7 @@ module increment_schedule #(
   always @(posedge clk) begin
     if (rst || flush) begin
       left <= 0;
+      over <= 1'b1;
       load_increment <= 1'b0;
       busy <= 1'b0;
       increment <= 0;
@@ -48,7 +50,11 @@ module increment_schedule #(
       if (next) begin
         increment <= segment[BITS+W-1:W];
         left <= segment[W-1:0];
-      end else if (run && left != 0) left <= left - 1'b1;
+        over <= segment[W-1:0] <= 1;
+      end else if (run && left != 0) begin
+        left <= left - 1'b1;
+        over <= left <= 2;
+      end
       busy <= next || (busy && !due);
     end
   end
@@ -69,6 +75,7 @@ module increment_schedule #(
     end else if (run && left != 0) since <= since + 1'b1;
   end
   always @(*) if (valid) begin
+    assert (over == (left <= 1));
     if (loaded) assert (since + left == asked && since <= asked);
   end
 `endif

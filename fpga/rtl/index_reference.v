@@ -39,7 +39,12 @@ module index_reference #(
   reg signed [8:0] part;  // of pending, for the next line
   reg wanted, settled;
 
-  wire signed [BITS-1:0] reach = $signed({{(BITS - W) {1'b0}}, window});
+  wire [BITS:0] reach = {{(BITS - W + 1) {1'b0}}, window};
+  wire [BITS:0] wide = {ahead[BITS-1], ahead};
+  /* verilator lint_off UNUSEDSIGNAL */  // the signs alone matter
+  wire [BITS:0] over = reach - wide;   // negative: ahead > window
+  wire [BITS:0] under = wide + reach;  // negative: ahead < -window
+  /* verilator lint_on UNUSEDSIGNAL */
   wire signed [W+1:0] most = $signed({{(W - 6) {1'b0}}, limit});
   // A turn is decided one clock before it is taken, and not again before `near` and `missing` know of it.
   reg take, turn, turned;
@@ -49,8 +54,8 @@ module index_reference #(
   always @(posedge clk) begin
     pin <= rst ? 3'b111 : {pin[1:0], index};
     revolution_less <= revolution - 1'b1;
-    near <= ahead <= reach && ahead >= -reach;
-    early <= ahead > reach;
+    near <= !over[BITS] && !under[BITS];
+    early <= over[BITS];
     part <= pending > most ? {1'b0, limit} : pending < -most ? -{1'b0, limit} : pending[8:0];
     adjust <= 1'b0;
     if (rst || !enable) begin
@@ -66,7 +71,7 @@ module index_reference #(
       if (rst) error <= 0;
       if (rst) amount <= 0;
     end else begin
-      missing <= referenced && ahead < -reach && free && !missing;
+      missing <= referenced && under[BITS] && free && !missing;
       take <= referenced && edge_seen && near && free && !missing;
       turn <= referenced ? free && (missing || (edge_seen && near)) : edge_seen && free;
       turned <= turn;
