@@ -48,13 +48,14 @@ module line_start #(
   // In timed mode nothing runs before its tick, and the tick starts it.
   reg valid = 1'b0;
   reg [W+1:0] since;
-  reg gone = 1'b0, was_timed = 1'b0;
+  reg gone = 1'b0, was_timed = 1'b0, was_run = 1'b0;
   (* anyconst *) reg [W-1:0] fixed;
   initial assume (rst);
   always @(*) assume (first_tick == fixed);
   always @(posedge clk) begin
     valid <= 1'b1;
     was_timed <= timed;
+    was_run <= run;
     if (rst) gone <= 1'b0;
     else if (go) begin
       gone  <= 1'b1;
@@ -67,6 +68,7 @@ module line_start #(
     if (arrived) assert (gone && since >= {2'b00, fixed} + 2'd3);
     if (arrives) assert (gone && since == {2'b00, fixed} + 2'd2);
     if (started && was_timed) assert (arrived);
+    if (arrived) assert (was_run);
   end
 `endif
 endmodule
