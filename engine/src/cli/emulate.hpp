@@ -23,6 +23,7 @@ struct EmulateOptions {
   std::optional<std::uint64_t> to;
   std::vector<std::string> faults;
   std::vector<std::string> acknowledgements;
+  bool rtl = false;
 
   bool writes() const { return !edges_path.empty() || !vcd_path.empty(); }
 };

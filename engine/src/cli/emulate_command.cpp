@@ -29,6 +29,9 @@ void check_together(const EmulateOptions& options, const CLI::App& verb) {
       throw CLI::ValidationError(name, "needs a program: the counter alone has no lines");
     }
   }
+  if (options.rtl && given("--fault")) {
+    throw CLI::ValidationError("--rtl", "runs a host without mistakes: leave out --fault");
+  }
   for (const char* name : {"--bits", "--m", "--increment", "--clocks"}) {
     if (counter && !given(name)) {
       throw CLI::RequiredError("PROGRAM, or all of --bits, --m, --increment and --clocks; missing: " +
@@ -75,6 +78,10 @@ void add_emulate(CLI::App& app, Command& command) {
                    "the whole job) or revolution=R,line=L; repeatable");
   verb->add_option("--acknowledge", options->acknowledgements,
                    "Acknowledge the fault before a line: line=N or revolution=R,line=L; repeatable");
+  verb->add_flag(
+      "--rtl", options->rtl,
+      "Run the same on the Verilog board under Verilator and compare every pin on every clock; a program from "
+      "the first line of the window, with its axis at 0 there");
   verb->callback([=, &command] {
     check_together(*options, *verb);
     command.run = [&command, options] {

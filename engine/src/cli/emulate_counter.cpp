@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "emulate.hpp"
+#include "emulate_rtl.hpp"
 #include "gravure/formats/waves.hpp"
 #include "gravure/fpga/edge_stream.hpp"
 #include "text_output.hpp"
@@ -49,7 +50,9 @@ Result<std::uint64_t> write_each(const fpga::AbRegisters& registers, TickWindow 
     written = write(edge);
     return written && output.flush(false) && !cancel_token().cancelled();
   }));
-  GRAVURE_CHECK(written);
+  if (!written) {
+    return written.error();
+  }
   if (cancel_token().cancelled()) {
     return Error{ErrorCode::cancelled, "stopped; nothing was written"};
   }
@@ -143,15 +146,27 @@ Result<int> run_counter(const EmulateOptions& options, const Command& command) {
     GRAVURE_CHECK(check(written));
   }
   const fpga::AbPosition end = fpga::position_after(options.registers, options.clocks);
+  Json rtl;
+  if (options.rtl) {
+    GRAVURE_TRY(rtl, counter_on_rtl(options));
+  }
   if (command.json) {
-    print_json({{"clocks", json_integer(Integer(options.clocks))},
-                {"edges", json_integer(Integer(end.edges))},
-                {"a", end.pins.a ? 1 : 0},
-                {"b", end.pins.b ? 1 : 0},
-                {"axis", axis_json(options.registers, options.clocks)}});
+    Json result = {{"clocks", json_integer(Integer(options.clocks))},
+                   {"edges", json_integer(Integer(end.edges))},
+                   {"a", end.pins.a ? 1 : 0},
+                   {"b", end.pins.b ? 1 : 0},
+                   {"axis", axis_json(options.registers, options.clocks)}};
+    if (options.rtl) {
+      result["rtl"] = rtl;
+    }
+    print_json(result);
   } else {
     print(fmt::format("{} clocks, {} edges, ends at A = {}, B = {}\n", options.clocks, end.edges, end.pins.a ? 1 : 0,
                       end.pins.b ? 1 : 0));
+    if (options.rtl) {
+      print(fmt::format("Verilog: the same {} edges, every pin equal on {} clocks\n", end.edges,
+                        rtl.at("clocks").get<std::uint64_t>()));
+    }
   }
   return kDone;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "emulate.hpp"
+#include "emulate_rtl.hpp"
 #include "gravure/emulator/emulated_device.hpp"
 #include "gravure/emulator/faults.hpp"
 #include "gravure/emulator/machine_waves.hpp"
@@ -206,12 +207,52 @@ Rational turns_after(const Plan& plan, std::uint64_t tick) {
   return exact / Rational(Integer(1) << (registers.bits - 2)) / plan.rotary.edges_per_revolution;
 }
 
+/// The frames of some lines through the wires of a board.
+class WireLink final : public DeviceLink {
+ public:
+  explicit WireLink(emulator::BoardHost& host) : host_(host) {}
+  Result<void> configure(const DeviceSetup&) override { return {}; }
+  Result<void> send(const LineFrame& frame) override { return host_.send(frame); }
+  DeviceStatus status() const override { return {}; }
+
+ private:
+  emulator::BoardHost& host_;
+};
+
+/// The same lines on the Verilog board and on its model; `fired` slots must come through the gate.
+Result<Json> lines_on_rtl(LineSource& program, Lines lines, const DeviceSetup& setup, std::int64_t fired) {
+  GRAVURE_TRY(TwoBoards boards, TwoBoards::load());
+  emulator::BoardHost host(
+      emulator::kRtlFifoBits,
+      [&boards](const fpga::Synchro::Inputs& inputs, std::uint64_t clocks) { return boards.hold(inputs, clocks); });
+  GRAVURE_CHECK(host.start_lines(setup, program.header().plan.line.slots_per_microvector));
+  WireLink link(host);
+  GRAVURE_CHECK(send_lines(program, lines, link));
+  GRAVURE_CHECK(host.finish());
+  if (boards.fault() != 0) {
+    return Error{ErrorCode::device, fmt::format("Verilog and model stopped with fault {} ({})", boards.fault(),
+                                                to_string(static_cast<DeviceFault>(boards.fault())))};
+  }
+  GRAVURE_CHECK(host.close());
+  const auto expected = static_cast<std::uint64_t>(fired * setup.ticks_per_slot);
+  if (boards.gate_clocks() != expected) {
+    return Error{ErrorCode::device,
+                 fmt::format("the gate of the Verilog was open for {} clocks, that of the lines is {}",
+                             boards.gate_clocks(), expected)};
+  }
+  return Json{{"clocks", json_integer(Integer(boards.clocks()))},
+              {"edges", json_integer(Integer(boards.edges()))},
+              {"gate_clocks", json_integer(Integer(boards.gate_clocks()))},
+              {"differences", 0}};
+}
+
 struct Run {
   TickWindow window;
   Lines lines;
   DeviceStatus status;
   std::int64_t fired = 0;
   std::vector<DarkLines> dark;
+  std::optional<Json> rtl;
 };
 
 void print_run(const EmulateOptions& options, const Command& command, const Plan& plan, const Run& run) {
@@ -243,6 +284,9 @@ void print_run(const EmulateOptions& options, const Command& command, const Plan
                           {"first_line", run.lines.first},
                           {"last_line", run.lines.last}};
     }
+    if (run.rtl) {
+      result["rtl"] = *run.rtl;
+    }
     print_json(result);
     return;
   }
@@ -259,6 +303,10 @@ void print_run(const EmulateOptions& options, const Command& command, const Plan
     text += fmt::format("dark from tick {} ({}) to {}: {} lines, fault register {} ({}): {}\n", lines.tick,
                         place_text(lines.first, plan), place_text(lines.last, plan), lines.last - lines.first + 1,
                         static_cast<int>(lines.fault), to_string(lines.fault), lines.detail);
+  }
+  if (run.rtl) {
+    text += fmt::format("Verilog: every pin equal on {} clocks, the gate open for the same slots\n",
+                        run.rtl->at("clocks").get<std::uint64_t>());
   }
   print(text);
 }
@@ -322,6 +370,9 @@ Result<int> run_program(const EmulateOptions& options, const Command& command) {
   run.status = host.status();
   run.fired = pins.fired();
   run.dark = host.dark();
+  if (options.rtl) {
+    GRAVURE_TRY(run.rtl, lines_on_rtl(*program, run.lines, setup, run.fired));
+  }
   print_run(options, command, plan, run);
   return run.dark.empty() && run.status.tick == (run.lines.last + 1) * plan.line.ticks ? kDone : kLimitViolated;
 }

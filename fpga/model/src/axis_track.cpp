@@ -54,7 +54,7 @@ AbPins AxisTrack::take() noexcept {
 AbGenerator AxisTrack::at(std::uint64_t clock) const noexcept {
   AbGenerator generator = front_;
   AbPacer& pacer = generator.pacer_;
-  const std::uint64_t clocks = clock - clock_ - std::uint64_t{AbGenerator::kClockMultiplier * kDrainSeedClocks};
+  const std::uint64_t clocks = clock - clock_ - std::uint64_t{AbGenerator::kClockMultiplier} * kDrainSeedClocks;
   if (enable_) {
     const std::uint64_t steps = clocks < pacer.left_ ? 0 : (clocks - pacer.left_) / pacer.period_ + 1;
     pacer.left_ = pacer.left_ + steps * pacer.period_ - clocks;

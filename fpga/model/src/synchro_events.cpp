@@ -22,7 +22,7 @@ bool SynchroEvents::axes_disturbed() const noexcept {
 
 /// The axes of board_ as they stand now: stepped there, or made from the closed form where that is far.
 void SynchroEvents::wake_axes() noexcept {
-  constexpr std::uint64_t kFar = 2U * AbGenerator::kClockMultiplier * AxisTrack::kDrainSeedClocks;
+  constexpr std::uint64_t kFar = std::uint64_t{2} * AbGenerator::kClockMultiplier * AxisTrack::kDrainSeedClocks;
   for (std::size_t axis = 0; axis < Synchro::kAxes; ++axis) {
     AbGenerator& generator = board_.axes_[axis];
     if (now_.clock - live_clock_ >= kFar) {

@@ -1,0 +1,150 @@
+#include "gravure/emulator/board_host.hpp"
+
+#include <string>
+
+#include "device_checks.hpp"
+#include "gravure/fpga/frame_parser.hpp"
+#include "gravure/fpga/register_map.hpp"
+
+namespace gravure::emulator {
+namespace {
+
+using fpga::AbGenerator;
+
+constexpr std::uint64_t kSeedClock = AbGenerator::kClockMultiplier;
+constexpr std::uint64_t kFrameOverhead = 1 + 3 * 8 + 4;  ///< kind, revolution, line, first slot; checksum
+/// Seed clocks from `go` to tick 0 of the first line: room for two frames and more.
+constexpr std::uint64_t kLead = 64;
+
+Error refusal(const std::string& what) {
+  return {ErrorCode::device, "the board refuses " + what};
+}
+
+}  // namespace
+
+Result<void> BoardHost::write(const fpga::Register& target, std::uint64_t value) {
+  if (target.bits < 64 && (value >> static_cast<unsigned>(target.bits)) != 0) {
+    return refusal(std::string(target.name) + " = " + std::to_string(value) + ": allowed is 0 to " +
+                   std::to_string((std::uint64_t{1} << static_cast<unsigned>(target.bits)) - 1));
+  }
+  for (int word = 0; word < (target.bits > 32 ? 2 : 1); ++word) {
+    fpga::Synchro::Inputs in;
+    in.write = true;
+    in.address = static_cast<std::uint8_t>(target.address + word);
+    in.write_data = static_cast<std::uint32_t>(value >> static_cast<unsigned>(32 * word));
+    GRAVURE_CHECK(wires_(in, kSeedClock));
+    ++now_;
+  }
+  return {};
+}
+
+Result<void> BoardHost::write_axis(const DeviceSetup& setup) {
+  if (setup.counter_bits != fpga::Synchro::kAxisWidths.bits) {
+    return refusal("counter_bits = " + std::to_string(setup.counter_bits) + ": its counters have " +
+                   std::to_string(fpga::Synchro::kAxisWidths.bits));
+  }
+  GRAVURE_CHECK(check_setup(setup));
+  GRAVURE_CHECK(write(fpga::kIncrementRegister, setup.increment));
+  GRAVURE_CHECK(write(fpga::kPrescalerRegister, setup.prescaler));
+  GRAVURE_CHECK(write(fpga::kFractionNumRegister, setup.fraction_num));
+  return write(fpga::kFractionDenRegister, setup.fraction_den);
+}
+
+Result<void> BoardHost::start_axis(const DeviceSetup& setup) {
+  constexpr std::uint64_t kEnable = 2;
+  constexpr std::uint64_t kLoad = 2;
+  fpga::Synchro::Inputs reset;
+  reset.rst = true;
+  GRAVURE_CHECK(wires_(reset, 4 * kSeedClock));
+  GRAVURE_CHECK(write_axis(setup));
+  GRAVURE_CHECK(write(fpga::kControlRegister, kEnable));
+  return write(fpga::kCommandRegister, kLoad);
+}
+
+Result<void> BoardHost::start_lines(const DeviceSetup& setup, std::int64_t slots_per_microvector) {
+  constexpr std::uint64_t kRunEnableTimed = 1U | 2U | 16U;
+  constexpr std::uint64_t kAcknowledge = 1;
+  constexpr std::uint64_t kPositionAndGo = 8U | 64U;
+  const auto bytes = static_cast<std::uint64_t>((setup.window_slots + 7) / 8);
+  if (setup.ticks_per_slot % static_cast<std::int64_t>(kSeedClock) != 0) {
+    return refusal("ticks_per_slot = " + std::to_string(setup.ticks_per_slot) + ": a slot lasts whole seed clocks of " +
+                   std::to_string(kSeedClock) + " ticks");
+  }
+  const auto seeds_per_slot = static_cast<std::uint64_t>(setup.ticks_per_slot) / kSeedClock;
+  line_seeds_ = static_cast<std::uint64_t>(setup.slots_per_line) * seeds_per_slot;
+  if (2 * bytes > std::uint64_t{1} << static_cast<unsigned>(fifo_bits_)) {
+    return refusal("window_slots = " + std::to_string(setup.window_slots) + ": two lines must fit into its FIFO of " +
+                   std::to_string(std::uint64_t{1} << static_cast<unsigned>(fifo_bits_)) + " bytes");
+  }
+  if (bytes + kFrameOverhead + kLead > line_seeds_) {
+    return refusal("lines of " + std::to_string(line_seeds_) + " seed clocks: a frame of " +
+                   std::to_string(bytes + kFrameOverhead) + " bytes takes longer");
+  }
+  GRAVURE_CHECK(start_axis(setup));
+  GRAVURE_CHECK(write(fpga::kSeedsPerSlotRegister, seeds_per_slot));
+  GRAVURE_CHECK(write(fpga::kSlotsPerLineRegister, static_cast<std::uint64_t>(setup.slots_per_line)));
+  GRAVURE_CHECK(write(fpga::kWindowSlotsRegister, static_cast<std::uint64_t>(setup.window_slots)));
+  GRAVURE_CHECK(write(fpga::kSlotsPerMicrovectorRegister, static_cast<std::uint64_t>(slots_per_microvector)));
+  GRAVURE_CHECK(write(fpga::kLinesPerRevolutionRegister, static_cast<std::uint64_t>(setup.lines_per_revolution)));
+  GRAVURE_CHECK(write(fpga::kPositionRevolutionRegister, static_cast<std::uint64_t>(setup.first_revolution)));
+  GRAVURE_CHECK(write(fpga::kPositionLineRegister, static_cast<std::uint64_t>(setup.first_line)));
+  const std::uint64_t lead = kLead + bytes + kFrameOverhead;
+  GRAVURE_CHECK(write(fpga::kFirstTickRegister, lead));
+  GRAVURE_CHECK(write(fpga::kCommandRegister, kAcknowledge));
+  GRAVURE_CHECK(wait(kLead * kSeedClock));
+  GRAVURE_CHECK(write(fpga::kControlRegister, kRunEnableTimed));
+  GRAVURE_CHECK(write(fpga::kCommandRegister, kPositionAndGo));
+  now_ = 0;
+  first_line_ = lead;
+  sent_ = 0;
+  return {};
+}
+
+Result<void> BoardHost::wait_until(std::uint64_t seed_clock) {
+  if (seed_clock > now_) {
+    GRAVURE_CHECK(wait((seed_clock - now_) * kSeedClock));
+    now_ = seed_clock;
+  }
+  return {};
+}
+
+Result<void> BoardHost::byte(std::uint8_t data) {
+  fpga::Synchro::Inputs in;
+  in.in_valid = true;
+  in.in_data = data;
+  ++now_;
+  return wires_(in, kSeedClock);
+}
+
+Result<void> BoardHost::word(std::uint64_t data, int bytes) {
+  for (int at = 0; at < bytes; ++at) {
+    GRAVURE_CHECK(byte(static_cast<std::uint8_t>(data >> static_cast<unsigned>(8 * at))));
+  }
+  return {};
+}
+
+Result<void> BoardHost::send(const LineFrame& frame) {
+  if (sent_ > 0) {
+    GRAVURE_CHECK(wait_until(first_line_ + (sent_ - 1) * line_seeds_ + kLead / 2));
+  }
+  ++sent_;
+  GRAVURE_CHECK(byte(fpga::FrameParser::kFrameKind));
+  GRAVURE_CHECK(word(static_cast<std::uint64_t>(frame.revolution), 8));
+  GRAVURE_CHECK(word(static_cast<std::uint64_t>(frame.line), 8));
+  GRAVURE_CHECK(word(static_cast<std::uint64_t>(frame.first_slot), 8));
+  for (const std::byte bits : frame.bits) {
+    GRAVURE_CHECK(byte(std::to_integer<std::uint8_t>(bits)));
+  }
+  return word(frame.crc32c, 4);
+}
+
+Result<void> BoardHost::finish() {
+  return wait_until(first_line_ + sent_ * line_seeds_);
+}
+
+Result<void> BoardHost::close() {
+  GRAVURE_CHECK(wait_until(now_ + kLead));
+  return write(fpga::kControlRegister, 0);
+}
+
+}  // namespace gravure::emulator

@@ -1,0 +1,131 @@
+#include "gravure/emulator/board_host.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <vector>
+
+#include "gravure/emulator/rtl_board.hpp"
+#include "gravure/fpga/ab_edges.hpp"
+#include "gravure/fpga/synchro_events.hpp"
+#include "recorder.hpp"
+
+namespace gravure::emulator {
+namespace {
+
+/// 3 revolutions of 4 lines of 120 slots of 4 ticks, 13 of them in the window.
+DeviceSetup board_setup() {
+  DeviceSetup setup = test::small_setup();
+  setup.counter_bits = 32;
+  setup.increment = 700'000'000;
+  setup.slots_per_line = 120;
+  setup.ticks_per_slot = 4;
+  return setup;
+}
+
+/// The model of the board behind the wires of a host.
+class BoardHostOnModel : public testing::Test {
+ protected:
+  struct Opening {
+    std::uint64_t clock;
+    std::uint64_t clocks;
+  };
+  Result<void> hold(const fpga::Synchro::Inputs& inputs, std::uint64_t clocks) {
+    board_.run(inputs, clocks, [this](const fpga::SynchroEvents::Event& now) {
+      edges_ += now.axes[0] == before_.axes[0] ? 0 : 1;
+      if (now.gate && !before_.gate) {
+        openings_.push_back({now.clock, 0});
+      } else if (!now.gate && before_.gate) {
+        openings_.back().clocks = now.clock - openings_.back().clock;
+      }
+      before_ = now;
+    });
+    return {};
+  }
+  fpga::SynchroEvents board_{kRtlFifoBits};
+  fpga::SynchroEvents::Event before_;
+  std::vector<Opening> openings_;
+  std::uint64_t edges_ = 0;
+  BoardHost host_{kRtlFifoBits,
+                  [this](const fpga::Synchro::Inputs& inputs, std::uint64_t clocks) { return hold(inputs, clocks); }};
+};
+
+TEST_F(BoardHostOnModel, OpensTheGateForTheSlotsOfEveryLine) {
+  ASSERT_TRUE(host_.start_lines(board_setup(), 5));
+  for (std::int64_t line = 0; line < 12; ++line) {
+    test::Frame frame(line / 4, line % 4);
+    ASSERT_TRUE(host_.send(*frame));
+  }
+  ASSERT_TRUE(host_.finish());
+  EXPECT_EQ(before_.fault, 0);
+  ASSERT_TRUE(host_.close());
+  // 0x81 + revolution, then 0xF8 - 8 line: runs of slots that fire, and where they begin.
+  std::vector<Opening> expected;
+  for (std::uint64_t line = 0; line < 12; ++line) {
+    const std::uint64_t bits = ((0x81 + line / 4) << 8U) | (0xF8 - 8 * (line % 4));
+    for (std::uint64_t slot = 0; slot < 13; ++slot) {
+      const bool fires = ((bits >> (15 - slot)) & 1U) != 0;
+      const bool fired = slot != 0 && ((bits >> (16 - slot)) & 1U) != 0;
+      if (fires && !fired) {
+        expected.push_back({(line * 120 + 3 + line % 4 + slot) * 4, 0});
+      }
+      expected.back().clocks += fires ? 4 : 0;
+    }
+  }
+  ASSERT_EQ(openings_.size(), expected.size());
+  const std::uint64_t start = openings_[0].clock - expected[0].clock;  // tick 0 of the job, in clocks of the board
+  for (std::size_t at = 0; at < expected.size(); ++at) {
+    EXPECT_EQ(openings_[at].clock, start + expected[at].clock) << at;
+    EXPECT_EQ(openings_[at].clocks, expected[at].clocks) << at;
+  }
+}
+
+TEST_F(BoardHostOnModel, RunsTheAxisAlone) {
+  const DeviceSetup setup = board_setup();
+  ASSERT_TRUE(host_.start_axis(setup));
+  constexpr std::uint64_t kClocks = 100'000;
+  constexpr auto kLoad = static_cast<std::uint64_t>(fpga::AbGenerator::load_latency(fpga::Synchro::kAxisWidths));
+  ASSERT_TRUE(host_.wait(kClocks + kLoad + 1));
+  const fpga::AbRegisters registers{32, setup.prescaler, setup.increment, setup.fraction_num, setup.fraction_den};
+  EXPECT_EQ(edges_, fpga::position_after(registers, kClocks).edges);
+}
+
+TEST_F(BoardHostOnModel, RefusesWhatDoesNotFitTheBoard) {
+  const auto refused = [this](auto change, const char* part) {
+    DeviceSetup setup = board_setup();
+    change(setup);
+    test::expect_refused(host_.start_lines(setup, 5), {"the board refuses", part});
+  };
+  refused([](DeviceSetup& setup) { setup.counter_bits = 31; }, "counter_bits = 31");
+  refused([](DeviceSetup& setup) { setup.fraction_den = std::uint64_t{1} << 34U; }, "fraction_den = 17179869184");
+  refused([](DeviceSetup& setup) { setup.increment = (1U << 30U) + 1; }, "increment = 1073741825");
+  refused([](DeviceSetup& setup) { setup.ticks_per_slot = 3; }, "ticks_per_slot = 3");
+  refused([](DeviceSetup& setup) { setup.slots_per_line = 70'000; }, "slots_per_line = 70000");
+  refused([](DeviceSetup& setup) { setup.window_slots = setup.slots_per_line = 20'000; }, "FIFO of 4096 bytes");
+  refused([](DeviceSetup& setup) { setup.slots_per_line = 20; }, "takes longer");
+}
+
+TEST(RtlBoard, SaysWhatToDoWhereItIsNotBuilt) {
+  ASSERT_EQ(setenv("GRAVURE_RTL_MODULE", "/nowhere/gravure_rtl.so", 1), 0);
+  const Result<RtlBoard> board = RtlBoard::load();
+  ASSERT_FALSE(board);
+  EXPECT_EQ(board.error().code, ErrorCode::io);
+  EXPECT_NE(board.error().message.find("verilator"), std::string::npos);
+  EXPECT_NE(board.error().message.find("/nowhere/gravure_rtl.so"), std::string::npos);
+}
+
+#ifdef GRAVURE_RTL_MODULE_PATH
+TEST(RtlBoard, IsOneOfOurBoards) {
+  ASSERT_EQ(setenv("GRAVURE_RTL_MODULE", GRAVURE_RTL_MODULE_PATH, 1), 0);
+  Result<RtlBoard> board = RtlBoard::load();
+  ASSERT_TRUE(board) << board.error().message;
+  gravure_fpga_board_outputs out{};
+  for (int clock = 0; clock < 8; ++clock) {
+    out = board.value().step({});
+  }
+  EXPECT_EQ(out.read_data, 0x47524156U);
+}
+#endif
+
+}  // namespace
+}  // namespace gravure::emulator
