@@ -164,9 +164,9 @@ Result<void> FaultyHost::send(const LineFrame& frame) {
   }
   const bool planned = next_fault_ < faults_.size() && faults_[next_fault_].ordinal == ordinal;
   const bool stood = device_->fault() != DeviceFault::none;
-  const Result<void> sent = planned   ? send_badly(faults_[next_fault_].kind, frame, ordinal)
-                            : silent_ ? device_->pass_line(DeviceFault::host_silence, "no byte came for a line time")
-                                      : device_->send(frame);
+  Result<void> sent = planned   ? send_badly(faults_[next_fault_].kind, frame, ordinal)
+                      : silent_ ? device_->pass_line(DeviceFault::host_silence, "no byte came for a line time")
+                                : device_->send(frame);
   if (device_->fault() == DeviceFault::none) {
     return sent;
   }
