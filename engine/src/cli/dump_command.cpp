@@ -77,7 +77,10 @@ Result<int> run(const Options& options, const Command& command) {
 }  // namespace
 
 void add_dump(CLI::App& app, Command& command) {
-  CLI::App* verb = add_verb(app, command, "dump", "The slots of one line as 0 and 1 in time order");
+  CLI::App* verb = add_verb(
+      app, command, "dump",
+      "The slots of one line as 0 and 1 in time order. Where the job is bidirectional, line L of revolution R runs "
+      "backwards if R * lines_per_revolution + L is odd: the scanner alternates over the whole job");
   const auto options = std::make_shared<Options>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
   verb->add_option("--revolution", options->revolution, "Revolution, from 0")
