@@ -149,15 +149,15 @@ Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::stri
 
 Result<ProgramHeader> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const std::string& output,
                                   const GrvOptions& grv, const Command& command) {
+  CompileOptions options;
+  options.cancel = &cancel_token();  // before there is a temporary file: from here on Ctrl-C takes it away again
   GRAVURE_TRY(Compilation made, prepare_compilation(loaded, output));
   GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
               create_grv(output, static_cast<std::int64_t>(made.header.layers.size()),
                          loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), grv));
   ProgressBar bar("compile");
-  CompileOptions options;
   options.memory_bytes = command.memory_bytes();
   options.threads = command.threads;
-  options.cancel = &cancel_token();
   options.progress = &bar;
   return compile(std::move(made.header), made.stack, opener, *sink, options);
 }

@@ -82,11 +82,11 @@ Result<int> run(const Options& options, const Command& command) {
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
   GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options));
-  GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(options.output, page));
-  std::vector<std::byte> inverted;
   UnrollOptions unroll_options;
   unroll_options.memory_bytes = command.memory_bytes();
-  unroll_options.cancel = &cancel_token();
+  unroll_options.cancel = &cancel_token();  // before there is a temporary file: from here on Ctrl-C takes it away again
+  GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(options.output, page));
+  std::vector<std::byte> inverted;
   GRAVURE_CHECK(unroll(
       *program, emulated_devices(), options.revolution,
       [&](std::span<const std::byte> rows, std::int64_t) {
