@@ -9,9 +9,11 @@ constexpr std::int64_t kMaxHeaderBytes = std::int64_t{1} << 20;
 constexpr std::uint32_t kMultiPart = 0x1000;
 constexpr std::uint32_t kDeep = 0x800;
 constexpr std::int64_t kMaxRowsPerChunk = 256;  // DWAB
+constexpr std::uint32_t kPixelTypes = 3;        // 32-bit unsigned, half, float
 
-/// What of one part's header decides how much memory reading it takes.
+/// What of one part's header decides how much memory reading it takes, and what OpenImageIO would abort on.
 struct Part {
+  std::optional<std::string> channels;
   std::optional<std::string> data_window;
   std::optional<std::string> tiles;
 };
@@ -35,7 +37,9 @@ std::optional<Part> read_part(std::string_view bytes, std::size_t& at) {
     if (size > bytes.size() - value) {
       return std::nullopt;
     }
-    if (name == "dataWindow" && size == 16) {
+    if (name == "channels") {
+      part.channels = bytes.substr(value, size);
+    } else if (name == "dataWindow" && size == 16) {
       part.data_window = bytes.substr(value, size);
     } else if (name == "tiles" && size == 9) {
       part.tiles = bytes.substr(value, size);
@@ -49,8 +53,36 @@ std::int64_t signed_at(const std::string& bytes, std::size_t at) {
   return static_cast<std::int32_t>(little_endian(bytes, at, 4));
 }
 
+/// A list of channels: name, pixel type, four bytes of no matter here, sampling in x and y; an empty name ends it.
+Result<void> check_channel_list(const std::string& place, const std::string& list) {
+  constexpr std::size_t kAfterName = 16;
+  std::size_t at = 0;
+  for (int number = 0;; ++number) {
+    const std::size_t name_end = list.find('\0', at);
+    if (name_end == at) {
+      return number > 0 ? Result<void>{} : bad_file(place, "has an empty list of channels: the file is damaged");
+    }
+    if (name_end == std::string::npos || list.size() - name_end - 1 < kAfterName) {
+      return bad_file(place, "its list of channels does not end: the file is damaged");
+    }
+    const std::string channel = "channel " + std::to_string(number);
+    if (const std::uint32_t type = little_endian(list, name_end + 1, 4); type >= kPixelTypes) {
+      return bad_file(place, channel + " is of the unknown pixel type " + std::to_string(type) +
+                                 " (0, 1 and 2 are defined): the file is damaged or of a newer kind");
+    }
+    if (signed_at(list, name_end + 9) != 1 || signed_at(list, name_end + 13) != 1) {
+      return bad_file(place, channel + " has fewer samples than pixels; save it with a sample for each");
+    }
+    at = name_end + 1 + kAfterName;
+  }
+}
+
 Result<void> check_part(const HeaderFile& file, const Part& part, std::size_t number) {
   const std::string place = file.path() + ": page " + std::to_string(number);
+  if (!part.channels) {
+    return bad_file(place, "has no list of channels: the file is damaged");
+  }
+  GRAVURE_CHECK(check_channel_list(place, *part.channels));
   if (!part.data_window) {
     return bad_file(place, "has no data window: the file is damaged");
   }

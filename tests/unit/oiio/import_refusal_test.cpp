@@ -166,6 +166,28 @@ TEST_F(ImportRefuses, OpenExrWhoseWindowsDiffer) {
   expect_refused("a.exr", "is not its display window (10 x 8)");
 }
 
+TEST_F(ImportRefuses, OpenExrOfUnknownPixelTypesAndFewerSamplesThanPixels) {
+  write_exr(OIIO::ImageSpec(8, 4, 1, OIIO::TypeHalf));
+  const std::string good = file_bytes(folder_ / "a.exr");
+  const std::size_t list = good.find(std::string("channels\0chlist\0", 16)) + 20;
+  const std::size_t channel = good.find('\0', list) + 1;
+  const auto with = [&](std::size_t at, std::uint8_t value) {
+    std::string bytes = good;
+    bytes[at] = static_cast<char>(value);
+    put_file(folder_ / "a.exr", bytes);
+  };
+  with(channel, 3);  // OpenImageIO would abort
+  expect_refused("a.exr", "channel 0 is of the unknown pixel type 3");
+  with(channel + 8, 2);
+  expect_refused("a.exr", "channel 0 has fewer samples than pixels");
+  with(list, 0);
+  expect_refused("a.exr", "has an empty list of channels");
+  with(list - 4, 17);  // its size
+  expect_refused("a.exr", "its list of channels does not end");
+  with(list - 18, 'x');
+  expect_refused("a.exr", "has no list of channels");
+}
+
 TEST_F(ImportRefuses, OpenExrThatDeclareMoreThanTheyHold) {
   OIIO::ImageSpec spec(8, 8, 1, OIIO::TypeHalf);
   spec.channelnames = {"Y"};
