@@ -1,3 +1,4 @@
+#include <array>
 #include <optional>
 
 #include "header_facts.hpp"
@@ -11,6 +12,56 @@ constexpr std::uint32_t kDeep = 0x800;
 constexpr std::int64_t kMaxRowsPerChunk = 256;  // DWAB
 constexpr std::uint32_t kPixelTypes = 3;        // 32-bit unsigned, half, float
 
+/// OpenEXR reads these by their type, not by the size that the file gives: with another size it would take the bytes
+/// that follow for attributes, and allocate what they seem to say. (Layout: the file layout chapter of OpenEXR 3.1.)
+struct FixedSize {
+  std::string_view type;
+  std::size_t bytes;
+};
+constexpr std::array kFixedSizes = {
+    FixedSize{"box2f", 16},      FixedSize{"box2i", 16},    FixedSize{"chromaticities", 32},
+    FixedSize{"compression", 1}, FixedSize{"double", 8},    FixedSize{"deepImageState", 1},
+    FixedSize{"envmap", 1},      FixedSize{"float", 4},     FixedSize{"int", 4},
+    FixedSize{"keycode", 28},    FixedSize{"lineOrder", 1}, FixedSize{"m33d", 72},
+    FixedSize{"m33f", 36},       FixedSize{"m44d", 128},    FixedSize{"m44f", 64},
+    FixedSize{"rational", 8},    FixedSize{"tiledesc", 9},  FixedSize{"timecode", 8},
+    FixedSize{"v2d", 16},        FixedSize{"v2f", 8},       FixedSize{"v2i", 8},
+    FixedSize{"v3d", 24},        FixedSize{"v3f", 12},      FixedSize{"v3i", 12},
+};
+
+/// Texts, each after its length.
+bool fits_string_vector(std::string_view value) {
+  std::size_t at = 0;
+  while (at + 4 <= value.size()) {
+    const std::size_t length = little_endian(value, at, 4);
+    if (length > value.size() - at - 4) {
+      return false;
+    }
+    at += 4 + length;
+  }
+  return at == value.size();
+}
+
+/// Width, height, four bytes a pixel.
+bool fits_preview(std::string_view value) {
+  const std::uint64_t width = little_endian(value, 0, 4);
+  const std::uint64_t height = little_endian(value, 4, 4);
+  return value.size() >= 8 && width <= value.size() && height <= value.size() && value.size() == 8 + 4 * width * height;
+}
+
+/// Does the size of an attribute agree with what its type makes OpenEXR read?
+bool size_fits(std::string_view type, std::string_view value) {
+  for (const FixedSize& fixed : kFixedSizes) {
+    if (type == fixed.type) {
+      return value.size() == fixed.bytes;
+    }
+  }
+  return type == "stringvector"  ? fits_string_vector(value)
+         : type == "preview"     ? fits_preview(value)
+         : type == "floatvector" ? value.size() % 4 == 0
+                                 : true;
+}
+
 /// What of one part's header decides how much memory reading it takes, and what OpenImageIO would abort on.
 struct Part {
   std::optional<std::string> channels;
@@ -18,7 +69,8 @@ struct Part {
   std::optional<std::string> tiles;
 };
 
-/// Walks the attributes of one part: name, type, size, value, until an empty name. Nothing when the bytes run out.
+/// Walks the attributes of one part: name, type, size, value, until an empty name. Nothing when the bytes run out
+/// or a size does not fit.
 std::optional<Part> read_part(std::string_view bytes, std::size_t& at) {
   Part part;
   while (at < bytes.size()) {
@@ -32,9 +84,11 @@ std::optional<Part> read_part(std::string_view bytes, std::size_t& at) {
       return std::nullopt;
     }
     const std::string_view name = bytes.substr(at, name_end - at);
+    const std::string_view type = bytes.substr(name_end + 1, type_end - name_end - 1);
     const std::size_t value = type_end + 5;
     const std::size_t size = little_endian(bytes, type_end + 1, 4);
-    if (size > bytes.size() - value) {
+    if (size > bytes.size() - value || !size_fits(type, bytes.substr(value, size)) ||
+        (name == "channels") != (type == "chlist")) {  // one list, check_channel_list() follows it
       return std::nullopt;
     }
     if (name == "channels") {
@@ -60,7 +114,9 @@ Result<void> check_channel_list(const std::string& place, const std::string& lis
   for (int number = 0;; ++number) {
     const std::size_t name_end = list.find('\0', at);
     if (name_end == at) {
-      return number > 0 ? Result<void>{} : bad_file(place, "has an empty list of channels: the file is damaged");
+      return number > 0 && at + 1 == list.size()
+                 ? Result<void>{}
+                 : bad_file(place, "its list of channels is empty or has more than ends it: the file is damaged");
     }
     if (name_end == std::string::npos || list.size() - name_end - 1 < kAfterName) {
       return bad_file(place, "its list of channels does not end: the file is damaged");
@@ -126,7 +182,9 @@ Result<void> check_exr_header(const std::string& path) {
   for (std::size_t number = 0;; ++number) {
     const auto part = read_part(bytes, at);
     if (!part) {
-      return bad_file(path, "its OpenEXR header does not end: the file is truncated or damaged; copy it again");
+      return bad_file(path,
+                      "its OpenEXR header does not end or has sizes that do not fit: the file is truncated or damaged; "
+                      "copy it again");
     }
     GRAVURE_CHECK(check_part(file, *part, number));
     // A multi-part header ends with one more empty name.

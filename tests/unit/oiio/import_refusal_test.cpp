@@ -181,11 +181,38 @@ TEST_F(ImportRefuses, OpenExrOfUnknownPixelTypesAndFewerSamplesThanPixels) {
   with(channel + 8, 2);
   expect_refused("a.exr", "channel 0 has fewer samples than pixels");
   with(list, 0);
-  expect_refused("a.exr", "has an empty list of channels");
+  expect_refused("a.exr", "its list of channels is empty");
   with(list - 4, 17);  // its size
   expect_refused("a.exr", "its list of channels does not end");
   with(list - 18, 'x');
-  expect_refused("a.exr", "has no list of channels");
+  expect_refused("a.exr", "sizes that do not fit");
+}
+
+TEST_F(ImportRefuses, OpenExrAttributesWhoseSizeIsNotThatOfTheirType) {
+  write_exr(OIIO::ImageSpec(8, 4, 1, OIIO::TypeHalf));
+  const std::string good = file_bytes(folder_ / "a.exr");
+  for (const auto& [name, type] : {std::pair<std::string, std::string>{"dataWindow", "box2i"},
+                                   {"screenWindowCenter", "v2f"},
+                                   {"pixelAspectRatio", "float"},
+                                   {"lineOrder", "lineOrder"},
+                                   {"compression", "compression"}}) {
+    std::string bytes = good;
+    const std::string head = name + '\0' + type + '\0';
+    ++bytes[bytes.find(head) + head.size()];
+    put_file(folder_ / "a.exr", bytes);
+    expect_refused("a.exr", "sizes that do not fit");
+  }
+  const std::size_t end = good.find(std::string("screenWindowWidth"));
+  for (const auto& [attribute, words] :
+       {std::pair{std::string("p\0preview\0\x0C\0\0\0\2\0\0\0\2\0\0\0\0\0\0\0", 26), "sizes that do not fit"},
+        {std::string("s\0stringvector\0\6\0\0\0\xFF\0\0\0ab", 26), "sizes that do not fit"},
+        {std::string("f\0floatvector\0\2\0\0\0ab", 20), "sizes that do not fit"}}) {
+    put_file(folder_ / "a.exr", good.substr(0, end) + attribute + good.substr(end));
+    expect_refused("a.exr", words);
+  }
+  const std::string fine("s\0stringvector\0\6\0\0\0\2\0\0\0ab", 25);
+  put_file(folder_ / "a.exr", good.substr(0, end) + fine + good.substr(end));
+  EXPECT_TRUE(files_.open(folder_ / "a.exr", 0));
 }
 
 TEST_F(ImportRefuses, OpenExrThatDeclareMoreThanTheyHold) {
