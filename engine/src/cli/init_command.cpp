@@ -46,6 +46,9 @@ Result<void> write_starter(const fs::path& job, const fs::path& layers, std::vec
     return Error{ErrorCode::io, layers.string() + ": cannot make the folder: " + failed.message()};
   }
   for (int layer = 0; layer < kLayers; ++layer) {
+    if (cancel_token().cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped before the job was complete; nothing was written"};
+    }
     const std::string path = (layers / fmt::format("layer_{:03}.tif", layer)).string();
     BilevelTiffPage page;
     page.width = kStarterPixels;
@@ -69,6 +72,7 @@ Result<int> run(const Options& options, const Command& command) {
       return Error{ErrorCode::bad_argument, taken.string() + ": is there already; give another folder"};
     }
   }
+  cancel_token();  // before there is a folder: from here on Ctrl-C takes it away again
   const bool made_folder = !fs::exists(options.folder, failed);
   std::vector<std::string> written;
   if (Result<void> done = write_starter(job, layers, written); !done) {  // so that it can be tried again

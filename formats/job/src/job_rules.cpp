@@ -6,11 +6,11 @@ namespace gravure::job_file {
 namespace {
 
 std::string full_name(const Section& section, const Entry& entry) {
-  return "[" + section.name + "] " + printable(entry.key) + " = " + entry.value.shown;
+  return "[" + section.name + "] " + one_line(entry.key) + " = " + entry.value.shown;
 }
 
 std::string elsewhere(const Entry& entry) {
-  return printable(entry.key) + " = " + entry.value.shown + " (line " + std::to_string(entry.at.line) + ")";
+  return one_line(entry.key) + " = " + entry.value.shown + " (line " + std::to_string(entry.at.line) + ")";
 }
 
 /// The later of two keys is the one to blame.

@@ -16,7 +16,7 @@ namespace job_file {
 namespace {
 
 std::string bracketed(std::string_view section) {
-  return "[" + printable(section) + "]";
+  return "[" + one_line(section) + "]";
 }
 
 bool contains(std::span<const std::string_view> words, std::string_view word) {
@@ -110,7 +110,7 @@ class Reader {
   }
 
   void report_loose_value(const Section& section, bool is_known) {
-    const std::string name = printable(section.name) + " = " + section.value.shown;
+    const std::string name = one_line(section.name) + " = " + section.value.shown;
     if (is_known) {
       violations_.add(section.at, name + ": must be a section " + bracketed(section.name) + ", not " +
                                       std::string(kind_name(section.value.kind)));
@@ -124,7 +124,7 @@ class Reader {
     const KeySpec* spec = find_key(section.name, entry.key);
     if (spec == nullptr) {
       const Suggestion advice = key_advice(section.name, entry.key, violations_);
-      violations_.add(entry.at, bracketed(section.name) + " " + printable(entry.key) + " = " + entry.value.shown +
+      violations_.add(entry.at, bracketed(section.name) + " " + one_line(entry.key) + " = " + entry.value.shown +
                                     ": unknown key" + advice.text);
       meant_.insert(section.name + "." + advice.nearest);
     } else if (check(*spec, entry.value)) {

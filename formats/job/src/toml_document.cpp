@@ -142,7 +142,7 @@ Value scalar_of(const toml::node& node, const SourceText& source) {
   value.kind = kind_of(node);
   value.at = location_of(node.source());
   const std::string_view literal = source.literal(node.source());
-  value.shown = printable(literal);
+  value.shown = one_line(literal);
   if (node.source().end.line > node.source().begin.line) {
     value.shown += "...";
   }
@@ -239,7 +239,7 @@ std::variant<Document, SyntaxError> parse_toml(std::string_view text) {
     if (const std::string_view line = source.line(at.line); !line.empty()) {
       message += ", in: " + std::string(line);
     }
-    return SyntaxError{at, printable(message, 400)};
+    return SyntaxError{at, one_line(message, 400)};
   }
   Document document;
   document.end = source.end();

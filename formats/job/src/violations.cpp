@@ -8,7 +8,7 @@ std::string place(std::string_view path, Location at) {
   return std::string(path) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": ";
 }
 
-std::string printable(std::string_view text, std::size_t max_bytes) {
+std::string one_line(std::string_view text, std::size_t max_bytes) {
   std::size_t length = text.size();
   if (length > max_bytes) {
     length = max_bytes;

@@ -40,6 +40,6 @@ class Violations {
 std::string place(std::string_view path, Location at);
 
 /// Safe to print on one line: control characters become '?', and what is longer than `max_bytes` ends in "...".
-std::string printable(std::string_view text, std::size_t max_bytes = 60);
+std::string one_line(std::string_view text, std::size_t max_bytes = 60);
 
 }  // namespace gravure::job_file
