@@ -1,5 +1,7 @@
 #include "program_files.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "gravure/emulator/emulated_device.hpp"
@@ -46,7 +48,8 @@ Result<void> refuse_overwrite(const std::string& output, const std::vector<std::
   for (const std::string& input : inputs) {
     std::error_code ignored;
     if (fs::equivalent(output, input, ignored)) {
-      return Error{ErrorCode::bad_argument, "output " + output + " is the input " + input + ": give another file name"};
+      return Error{ErrorCode::bad_argument,
+                   fmt::format("output {} is the input {}: give another file name", output, input)};
     }
   }
   return {};
