@@ -159,7 +159,7 @@ std::string either(std::span<const std::string_view> words) {
   return text;
 }
 
-std::string with_unit(std::string text, std::string_view unit) {
+std::string with_unit(const std::string& text, std::string_view unit) {
   return unit.empty() ? text : text + " " + std::string(unit);
 }
 

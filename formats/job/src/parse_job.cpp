@@ -37,7 +37,7 @@ Suggestion key_advice(std::string_view section, std::string_view key, const Viol
       candidates.push_back({spec.key, std::string(spec.key)});
     }
   }
-  const Suggestion here = suggest(key, candidates);
+  Suggestion here = suggest(key, candidates);
   if (here.is_near) {
     return here;
   }
