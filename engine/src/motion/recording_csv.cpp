@@ -1,4 +1,4 @@
-#include "csv_rows.hpp"
+#include "gravure/core/csv_rows.hpp"
 #include "gravure/motion/identify.hpp"
 #include "gravure/motion/ruled_blade.hpp"
 

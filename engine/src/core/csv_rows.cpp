@@ -1,12 +1,13 @@
-#include "csv_rows.hpp"
+#include "gravure/core/csv_rows.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <cmath>
+#include <string>
 
-namespace gravure::motion {
+namespace gravure {
 namespace {
 
 constexpr std::size_t kMaxRows = 10'000'000;
@@ -43,10 +44,19 @@ bool is_blank_or_comment(std::string_view line) noexcept {
   return true;
 }
 
+/// The line as a message may show it: short, and nothing that a terminal would obey.
+std::string shown(std::string_view line) {
+  std::string text(line.substr(0, 60));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }, '?');
+  return text;
+}
+
 }  // namespace
 
 Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
                            const std::function<void(std::span<const double>)>& row) {
+  assert(columns.count <= kMostCsvColumns);
   bool heading_allowed = true;
   std::size_t rows = 0;
   for (std::size_t number = 1; !text.empty(); ++number) {
@@ -56,7 +66,7 @@ Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
     if (is_blank_or_comment(line)) {
       continue;
     }
-    std::array<double, 3> values{};
+    std::array<double, kMostCsvColumns> values{};
     std::string_view rest = line;
     std::size_t taken = 0;
     while (taken < columns.count && take_number(rest, values[taken])) {
@@ -66,16 +76,16 @@ Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
       row({values.data(), taken});
       ++rows;
     } else if (!heading_allowed) {
-      return Error{ErrorCode::bad_file, fmt::format("{}: line {}: \"{}\": must be {}", columns.subject, number,
-                                                    line.substr(0, 60), columns.meaning)};
+      return Error{ErrorCode::bad_file, std::string(columns.subject) + ": line " + std::to_string(number) + ": \"" +
+                                            shown(line) + "\": must be " + std::string(columns.meaning)};
     }
     heading_allowed = false;
     if (rows > kMaxRows) {
-      return Error{ErrorCode::bad_file,
-                   fmt::format("{}: more than {} rows: shorten or thin it", columns.subject, kMaxRows)};
+      return Error{ErrorCode::bad_file, std::string(columns.subject) + ": more than " + std::to_string(kMaxRows) +
+                                            " rows: shorten or thin it"};
     }
   }
   return {};
 }
 
-}  // namespace gravure::motion
+}  // namespace gravure

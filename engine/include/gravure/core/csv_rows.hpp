@@ -7,13 +7,15 @@
 
 #include "gravure/core/error.hpp"
 
-namespace gravure::motion {
+namespace gravure {
+
+inline constexpr std::size_t kMostCsvColumns = 4;
 
 /// What the columns of a CSV text mean, for messages.
 struct CsvColumns {
   std::string_view subject;  ///< "recording"
   std::string_view meaning;  ///< "time in s and acceleration in mm/s^2, two numbers"
-  std::size_t count = 2;     ///< at most 3; further ones are not read
+  std::size_t count = 2;     ///< at most kMostCsvColumns; further ones are not read
 };
 
 /// Calls `row` with the numbers of each line, separated by comma, semicolon, tab or blanks. A first line that is not
@@ -22,4 +24,4 @@ struct CsvColumns {
 Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
                            const std::function<void(std::span<const double>)>& row);
 
-}  // namespace gravure::motion
+}  // namespace gravure
