@@ -1,0 +1,162 @@
+#include "gravure/scan/line_trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gravure/scan/landing.hpp"
+
+namespace gravure::scan {
+namespace {
+
+using kinematics::FieldPoint;
+using kinematics::ScanHead;
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr double kUmPerMm = 1000;
+
+Result<std::int32_t> count_of(double position_mm, const char* axis, const ScanHead& head, double resolution_mm) {
+  const double count = std::round(position_mm / resolution_mm);
+  const double half = std::ldexp(1.0, head.resolution_bits - 1);
+  if (!(count >= -half && count <= half - 1)) {
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("scan: set-point {} = {} mm, field correction included: beyond the scanner's range of {} to "
+                    "{} mm; take a larger field_mm or fewer pixels",
+                    axis, position_mm, -half * resolution_mm, (half - 1) * resolution_mm)};
+  }
+  return static_cast<std::int32_t>(count);
+}
+
+Result<SetPoint> set_point_at(const LineTrajectory& trajectory, Direction direction, double slot) {
+  const FieldPoint wanted = trajectory.path.at(direction, slot);
+  GridPoint order{wanted.u_mm, wanted.v_mm};
+  if (trajectory.options.field_grid) {
+    GRAVURE_TRY(order, trajectory.options.field_grid->command_for(order));
+  }
+  SetPoint point{wanted.u_mm, wanted.v_mm, 0, 0};
+  const ScanHead& head = trajectory.path.geometry().machine.head;
+  GRAVURE_TRY(point.u_count, count_of(order.u_mm, "U", head, trajectory.resolution_mm));
+  GRAVURE_TRY(point.v_count, count_of(order.v_mm, "V", head, trajectory.resolution_mm));
+  return point;
+}
+
+Result<std::vector<SetPoint>> set_points(const LineTrajectory& trajectory, Direction direction) {
+  const LineTiming& timing = trajectory.path.timing();
+  const std::int64_t count = timing.slots / timing.slots_per_microvector;
+  std::vector<SetPoint> points;
+  points.reserve(static_cast<std::size_t>(count));
+  for (std::int64_t k = 0; k < count; ++k) {
+    const std::int64_t tick = k * timing.slots_per_microvector * timing.ticks_per_slot + trajectory.lag_ticks;
+    const double slot = static_cast<double>(tick) / static_cast<double>(timing.ticks_per_slot);
+    GRAVURE_TRY(const SetPoint point, set_point_at(trajectory, direction, slot));
+    points.push_back(point);
+  }
+  return points;
+}
+
+struct Lag {
+  std::int64_t ticks = 0;
+  Rational remainder_ticks = 0;
+};
+
+/// The nearest whole ticks and what they leave.
+Result<Lag> lag_of(const LineTiming& timing, const ScanHead& head) {
+  const Rational lag = head.lag_us * Rational(timing.fpga_hz) / Rational(1'000'000);
+  if (lag >= Rational(timing.ticks())) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("scan: lag_us = {}: longer than a line of {} FPGA ticks; at most {} us fit",
+                             to_decimal_string(head.lag_us), timing.ticks(),
+                             static_cast<double>(timing.ticks() - 1) / static_cast<double>(timing.fpga_hz) * 1e6)};
+  }
+  Lag result;
+  GRAVURE_TRY(result.ticks, to_int64(round_of(lag), "lag_us"));
+  result.remainder_ticks = lag - Rational(result.ticks);
+  return result;
+}
+
+/// Widens `quality` by one direction's lines.
+void measure(const LineTrajectory& trajectory, Direction direction, LineQuality& quality) {
+  const LinePath& path = trajectory.path;
+  const LineTiming& timing = path.timing();
+  const kinematics::Vector3& normal = path.geometry().surface_normal;
+  LandingModel real = landing_model(trajectory);
+  LandingModel unrounded = real;
+  unrounded.rounding = false;
+  const auto centre = static_cast<double>(timing.first_slot(direction)) + static_cast<double>(timing.pixels - 1) / 2;
+  const double v_speed = path.on_line(direction, centre + 0.5).v_mm - path.on_line(direction, centre - 0.5).v_mm;
+  const double v_centre = path.on_line(direction, centre).v_mm;
+  const auto widen = [](double& most, double value) { most = std::max(most, std::abs(value)); };
+  for (std::int64_t pixel = 0; pixel < timing.pixels; ++pixel) {
+    const LandingError error = landing_error(trajectory, direction, pixel, real);
+    widen(quality.along_um, error.along_um);
+    widen(quality.across_um, error.across_um);
+    widen(quality.defocus_um, error.defocus_um);
+    const LandingError chord = landing_error(trajectory, direction, pixel, unrounded);
+    widen(quality.interpolation_um, std::hypot(chord.along_um, chord.across_um));
+    const auto slot = static_cast<double>(timing.slot_of_pixel(direction, pixel));
+    const FieldPoint field = path.on_line(direction, slot);
+    widen(quality.straight_um, (field.v_mm - v_centre - v_speed * (slot - centre)) * kUmPerMm);
+    const auto spot = kinematics::forward(path.geometry().machine, path.joints_at(slot), field);
+    widen(quality.incidence_deg, std::acos(std::min(1.0, spot.towards_head.dot(normal))) * kDegrees);
+  }
+}
+
+void warn_of_absent_limits(const ScanHead& head, std::vector<std::string>& warnings) {
+  const auto warn = [&warnings](const char* field, const std::optional<double>& limit) {
+    if (!limit) {
+      warnings.push_back(fmt::format("scanner.{} is absent: the turn is not checked against it", field));
+    }
+  };
+  warn("max_speed_mm_s", head.max_speed_mm_s);
+  warn("max_acceleration_mm_s2", head.max_acceleration_mm_s2);
+  warn("max_jerk_mm_s3", head.max_jerk_mm_s3);
+}
+
+}  // namespace
+
+Result<LineTrajectory> make_line_trajectory(const LineTiming& timing, const LineGeometry& geometry,
+                                            const TrajectoryOptions& options) {
+  GRAVURE_CHECK(check_timing(timing));
+  GRAVURE_CHECK(kinematics::check_machine(geometry.machine));
+  if (geometry.at_centre.size() != geometry.machine.joints.size() ||
+      geometry.per_slot.size() != geometry.machine.joints.size()) {
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("scan: at_centre has {} and per_slot {} positions: the machine has "
+                             "{} joints",
+                             geometry.at_centre.size(), geometry.per_slot.size(), geometry.machine.joints.size())};
+  }
+  const ScanHead& head = geometry.machine.head;
+  Lag lag;
+  if (options.lag_compensation) {
+    GRAVURE_TRY(lag, lag_of(timing, head));
+  }
+  GRAVURE_TRY(LinePath path, LinePath::plan(timing, geometry, options.cross_scan_correction, lag.ticks));
+  LineTrajectory trajectory{std::move(path),
+                            options,
+                            std::ldexp(head.field_mm, -head.resolution_bits),
+                            geometry.pixel_pitch_mm / timing.slot_s(),
+                            lag.ticks,
+                            lag.remainder_ticks,
+                            {},
+                            {},
+                            {},
+                            0,
+                            {}};
+  GRAVURE_TRY(trajectory.forward, set_points(trajectory, Direction::forward));
+  if (timing.bidirectional) {
+    GRAVURE_TRY(trajectory.reverse, set_points(trajectory, Direction::reverse));
+  }
+  measure(trajectory, Direction::forward, trajectory.quality);
+  if (timing.bidirectional) {
+    measure(trajectory, Direction::reverse, trajectory.quality);
+  }
+  if (options.field_grid) {
+    trajectory.field_grid_error_um = options.field_grid->interpolation_error_um();
+  }
+  warn_of_absent_limits(head, trajectory.warnings);
+  return trajectory;
+}
+
+}  // namespace gravure::scan

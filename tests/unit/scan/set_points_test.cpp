@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "gravure/scan/set_point_csv.hpp"
+#include "roller.hpp"
+
+namespace gravure::scan {
+namespace {
+
+using test::roller_geometry;
+using test::roller_head;
+using test::roller_timing;
+
+TEST(SetPoints, AreWholeCountsOneAMicrovector) {
+  const LineTrajectory trajectory = make_line_trajectory(roller_timing(), roller_geometry(), {}).value();
+  ASSERT_EQ(trajectory.forward.size(), 270U);
+  ASSERT_EQ(trajectory.reverse.size(), 270U);
+  EXPECT_EQ(trajectory.resolution_mm, 40.0 / (1 << 20));
+  for (const Direction direction : {Direction::forward, Direction::reverse}) {
+    const auto& points = trajectory.set_points(direction);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto wanted = trajectory.path.at(direction, 20.0 * static_cast<double>(k));
+      EXPECT_EQ(points[k].u_mm, wanted.u_mm);
+      EXPECT_NEAR(points[k].u_count * trajectory.resolution_mm, wanted.u_mm, trajectory.resolution_mm / 2 * 1.000001);
+      EXPECT_NEAR(points[k].v_count * trajectory.resolution_mm, wanted.v_mm, trajectory.resolution_mm / 2 * 1.000001);
+    }
+  }
+}
+
+TEST(SetPoints, LeadByTheLagInTicks) {
+  kinematics::ScanHead head = roller_head();
+  head.lag_us = ratio(25, 2);  // 25 slots
+  const LineTrajectory trajectory =
+      make_line_trajectory(roller_timing(), roller_geometry(roller_timing(), head), {}).value();
+  EXPECT_EQ(trajectory.lag_ticks, 2050);
+  EXPECT_EQ(trajectory.forward[60].u_mm, trajectory.path.at(Direction::forward, 1225).u_mm);
+  const auto beyond = trajectory.path.at(Direction::reverse, 5.0);
+  EXPECT_NEAR(trajectory.forward.back().u_mm, beyond.u_mm, 1e-12) << "the last one belongs to the next line already";
+}
+
+TEST(SetPoints, CountsAreNeverWrapped) {
+  kinematics::ScanHead head = roller_head();
+  head.resolution_bits = 16;
+  head.field_mm = 40;
+  LineGeometry geometry = roller_geometry(roller_timing(), head);
+  geometry.centre_u_mm = 2.5;  // the turn reaches 20.0 mm, beyond the highest count
+  const auto refused = make_line_trajectory(roller_timing(), geometry, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+}
+
+TEST(SetPoints, AbsentLimitsAreWarnedOfOneByOne) {
+  kinematics::ScanHead head = roller_head();
+  const auto warnings = [&head] {
+    return make_line_trajectory(roller_timing(), roller_geometry(roller_timing(), head), {}).value().warnings;
+  };
+  EXPECT_TRUE(warnings().empty());
+  head.max_jerk_mm_s3 = std::nullopt;
+  ASSERT_EQ(warnings().size(), 1U);
+  EXPECT_NE(warnings()[0].find("max_jerk_mm_s3"), std::string::npos);
+  head.max_speed_mm_s = head.max_acceleration_mm_s2 = std::nullopt;
+  EXPECT_EQ(warnings().size(), 3U);
+}
+
+TEST(SetPoints, UndoTheDistortionOfTheField) {
+  // Barrel: 1 % at the edge of the field.
+  FieldGrid grid{41, 41, -20, 20, -20, 20, {}};
+  for (std::size_t row = 0; row < grid.rows; ++row) {
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      const GridPoint node = grid.node(column, row);
+      const double share = -0.01 * (node.u_mm * node.u_mm + node.v_mm * node.v_mm) / 400;
+      grid.errors.push_back({share * node.u_mm, share * node.v_mm});
+    }
+  }
+  const LineTrajectory plain = make_line_trajectory(roller_timing(), roller_geometry(), {}).value();
+  const LineTrajectory corrected = make_line_trajectory(roller_timing(), roller_geometry(), {true, true, grid}).value();
+  EXPECT_LT(corrected.forward[50].u_count, plain.forward[50].u_count) << "at the left, ordered further to the left";
+  EXPECT_LT(corrected.quality.across_um, 0.08);
+  // Chords between set-points of a distorted path: well below a micrometre.
+  EXPECT_LT(corrected.quality.along_um, 0.2);
+  EXPECT_NEAR(corrected.field_grid_error_um, grid.interpolation_error_um(), 0);
+}
+
+TEST(SetPoints, AreWrittenAsCsv) {
+  const LineTrajectory trajectory = make_line_trajectory(roller_timing(), roller_geometry(), {}).value();
+  const std::string csv = set_points_csv(trajectory, Direction::reverse);
+  EXPECT_EQ(csv.rfind("direction,set_point,slot,tick,u_mm,v_mm,u_count,v_count\nreverse,0,0,0,", 0), 0U);
+  EXPECT_NE(csv.find("\nreverse,269,5380,441160,"), std::string::npos);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 271);
+}
+
+TEST(SetPoints, GeometriesThatDoNotFitTheMachineAreRefused) {
+  LineGeometry geometry = roller_geometry();
+  geometry.per_slot.pop_back();
+  const auto refused = make_line_trajectory(roller_timing(), geometry, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::bad_argument);
+}
+
+}  // namespace
+}  // namespace gravure::scan
