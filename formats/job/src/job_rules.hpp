@@ -3,10 +3,12 @@
 #include <string_view>
 
 #include "gravure/core/job.hpp"
-#include "src/toml_document.hpp"
-#include "src/violations.hpp"
+#include "gravure/formats/toml/document.hpp"
+#include "gravure/formats/toml/violations.hpp"
 
 namespace gravure::job_file {
+
+using namespace toml_file;
 
 /// What one key says about another: which exclude or need each other, whose values contradict. Keys count as given
 /// where they stand in the file, even with a wrong value; values are compared where both passed their own checks and

@@ -6,9 +6,11 @@
 #include <string_view>
 
 #include "gravure/core/job.hpp"
-#include "src/toml_document.hpp"
+#include "gravure/formats/toml/document.hpp"
 
 namespace gravure::job_file {
+
+using namespace toml_file;
 
 enum class Type : std::uint8_t { boolean, integer, decimal, title, path, paths, word, two_integers };
 

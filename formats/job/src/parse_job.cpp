@@ -5,11 +5,11 @@
 #include <variant>
 
 #include "gravure/formats/job_file.hpp"
-#include "src/edit_distance.hpp"
+#include "gravure/formats/toml/document.hpp"
+#include "gravure/formats/toml/edit_distance.hpp"
+#include "gravure/formats/toml/violations.hpp"
 #include "src/job_rules.hpp"
 #include "src/key_table.hpp"
-#include "src/toml_document.hpp"
-#include "src/violations.hpp"
 
 namespace gravure {
 namespace job_file {

@@ -1,6 +1,6 @@
-#include "src/toml_document.hpp"
+#include "gravure/formats/toml/document.hpp"
 
-namespace gravure::job_file {
+namespace gravure::toml_file {
 namespace {
 
 /// Walks TOML text just closely enough to know what is a key part, a string and a comment.
@@ -102,4 +102,4 @@ Location find_deep_key(std::string_view text, int max_parts) {
   return DepthScanner(text, max_parts).find();
 }
 
-}  // namespace gravure::job_file
+}  // namespace gravure::toml_file

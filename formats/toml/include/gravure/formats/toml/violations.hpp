@@ -9,7 +9,7 @@
 #include "gravure/core/error.hpp"
 #include "gravure/core/job.hpp"
 
-namespace gravure::job_file {
+namespace gravure::toml_file {
 
 using Location = TextPlace;
 
@@ -42,4 +42,4 @@ std::string place(std::string_view path, Location at);
 /// Safe to print on one line: control characters become '?', and what is longer than `max_bytes` ends in "...".
 std::string one_line(std::string_view text, std::size_t max_bytes = 60);
 
-}  // namespace gravure::job_file
+}  // namespace gravure::toml_file

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "gravure/core/exact.hpp"
-#include "src/violations.hpp"
+#include "gravure/formats/toml/violations.hpp"
 
-namespace gravure::job_file {
+namespace gravure::toml_file {
 
 enum class Kind : std::uint8_t { boolean, integer, decimal, not_finite, text, array, table, date };
 
@@ -67,4 +67,4 @@ inline constexpr int kMaxKeyParts = 32;
 /// unterminated string, where parsing ends as well.
 Location find_deep_key(std::string_view text, int max_parts);
 
-}  // namespace gravure::job_file
+}  // namespace gravure::toml_file

@@ -1,4 +1,4 @@
-#include "src/toml_document.hpp"
+#include "gravure/formats/toml/document.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -27,7 +27,7 @@
 #define TOML_UNREACHABLE __builtin_unreachable()
 #include <toml++/toml.h>
 
-namespace gravure::job_file {
+namespace gravure::toml_file {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -250,4 +250,4 @@ std::variant<Document, SyntaxError> parse_toml(std::string_view text) {
   return document;
 }
 
-}  // namespace gravure::job_file
+}  // namespace gravure::toml_file

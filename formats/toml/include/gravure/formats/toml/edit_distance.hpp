@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace gravure::job_file {
+namespace gravure::toml_file {
 
 /// Fewest insertions, deletions, replacements and swaps of neighbours that make `a` from `b`, letter case aside.
 std::size_t edit_distance(std::string_view a, std::string_view b);
@@ -25,4 +25,4 @@ struct Suggestion {
 /// The candidate nearest to a wrong word; of equally near ones the first. Empty without candidates.
 Suggestion suggest(std::string_view wrong, std::span<const Candidate> candidates);
 
-}  // namespace gravure::job_file
+}  // namespace gravure::toml_file

@@ -1,10 +1,10 @@
-#include "src/edit_distance.hpp"
+#include "gravure/formats/toml/edit_distance.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <vector>
 
-namespace gravure::job_file {
+namespace gravure::toml_file {
 namespace {
 
 constexpr std::size_t kMaxCompared = 64;  // no key is longer; bounds the work for hostile files
@@ -55,4 +55,4 @@ Suggestion suggest(std::string_view wrong, std::span<const Candidate> candidates
           is_near ? std::string(nearest->word) : "", is_near};
 }
 
-}  // namespace gravure::job_file
+}  // namespace gravure::toml_file

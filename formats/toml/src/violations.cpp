@@ -1,8 +1,8 @@
-#include "src/violations.hpp"
+#include "gravure/formats/toml/violations.hpp"
 
 #include <algorithm>
 
-namespace gravure::job_file {
+namespace gravure::toml_file {
 
 std::string place(std::string_view path, Location at) {
   return std::string(path) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": ";
@@ -40,4 +40,4 @@ Error Violations::to_error(std::string_view path) const {
   return error;
 }
 
-}  // namespace gravure::job_file
+}  // namespace gravure::toml_file
