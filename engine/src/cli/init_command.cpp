@@ -68,12 +68,12 @@ Result<int> run(const Options& options, const Command& command) {
   const fs::path layers = fs::path(options.folder) / "layers";
   std::error_code failed;
   for (const fs::path& taken : {job, layers}) {
-    if (fs::exists(taken, failed)) {
+    if (fs::exists(fs::symlink_status(taken, failed))) {  // also a link to nowhere
       return Error{ErrorCode::bad_argument, taken.string() + ": is there already; give another folder"};
     }
   }
   cancel_token();  // before there is a folder: from here on Ctrl-C takes it away again
-  const bool made_folder = !fs::exists(options.folder, failed);
+  const bool made_folder = !fs::exists(fs::symlink_status(options.folder, failed));
   std::vector<std::string> written;
   if (Result<void> done = write_starter(job, layers, written); !done) {  // so that it can be tried again
     fs::remove_all(made_folder ? fs::path(options.folder) : layers, failed);

@@ -48,18 +48,14 @@ std::string help_of(const CLI::App& app) {
   return "gravure " + (verbs.empty() ? "" : verbs.front()->get_name() + " ") + "--help";
 }
 
-/// What the parser would take for something else: an empty text for 0 or no path, an unknown verb for a missing one.
-void refuse_ambiguous(const CLI::App& app, const std::vector<std::string>& arguments) {
-  const auto empty = std::find(arguments.begin(), arguments.end(), "");
-  if (empty != arguments.end()) {
-    throw CLI::ValidationError(empty == arguments.begin() ? "the verb" : "the argument after " + *(empty - 1),
-                               "is empty");
-  }
-  const CLI::App* level = &app;  // "motion" has verbs of its own
+/// The verb that was given, as deep as it goes: "motion" has verbs of its own. The parser takes an unknown one for a
+/// missing one.
+const CLI::App& given_verb(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const CLI::App* level = &app;
   for (const std::string& argument : arguments) {
     const std::vector<const CLI::App*> known = level->get_subcommands([](const CLI::App*) { return true; });
     if (known.empty() || argument[0] == '-') {
-      return;
+      break;
     }
     const auto given =
         std::find_if(known.begin(), known.end(), [&](const CLI::App* verb) { return verb->get_name() == argument; });
@@ -72,9 +68,36 @@ void refuse_ambiguous(const CLI::App& app, const std::vector<std::string>& argum
     }
     level = *given;
   }
+  return *level;
+}
+
+/// What the parser would take for something else: an empty text for 0 or no path, an option for the value of another.
+void refuse_ambiguous(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const auto empty = std::find(arguments.begin(), arguments.end(), "");
+  if (empty != arguments.end()) {
+    throw CLI::ValidationError(empty == arguments.begin() ? "the verb" : "the argument after " + *(empty - 1),
+                               "is empty");
+  }
+  const CLI::App& verb = given_verb(app, arguments);
+  for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
+    const CLI::Option* option = verb.get_option_no_throw(arguments[i]);
+    const bool takes_value = option != nullptr && option->get_items_expected_min() > 0;
+    if (takes_value && arguments[i][0] == '-' && verb.get_option_no_throw(arguments[i + 1]) != nullptr &&
+        arguments[i + 1][0] == '-') {
+      throw CLI::ValidationError(arguments[i], "needs a value; " + arguments[i + 1] + " is an option");
+    }
+  }
+}
+
+bool wants_json(const std::vector<std::string>& arguments) {
+  return std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
 }
 
 int run(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (wants_json(arguments)) {
+    gravure::cli::promise_json();
+  }
   watch_signals();
   Command command;
   CLI::App app("Raster gravure engine for rotational workpieces: image stacks to verified laser programs.", "gravure");
@@ -94,7 +117,6 @@ int run(int argc, char** argv) {
   gravure::cli::add_verify(app, command);
   gravure::cli::add_emulate(app, command);
   gravure::cli::add_motion_command(app, command);
-  const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {
     refuse_ambiguous(app, arguments);
     app.parse(argc, argv);
@@ -102,10 +124,9 @@ int run(int argc, char** argv) {
     app.exit(shown);
     return std::cout.flush() ? 0 : report({gravure::ErrorCode::io, "standard output: cannot write"}, false);
   } catch (const CLI::ParseError& error) {
-    const bool json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
     const bool no_verb = std::string(error.what()) == "A subcommand is required";
     const std::string what = no_verb ? "a verb is missing" : error.what();
-    return report({gravure::ErrorCode::bad_argument, what + "; see " + help_of(app)}, json);
+    return report({gravure::ErrorCode::bad_argument, what + "; see " + help_of(app)}, wants_json(arguments));
   }
   const Result<int> result = command.run();
   const int status = result ? result.value() : report(result.error(), command.json);
@@ -118,13 +139,12 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const bool json = wants_json({argv, argv + argc});
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
-    std::fputs("gravure: error: out of memory: lower --memory or --threads\n", stderr);
-    return 3;
+    return report({gravure::ErrorCode::io, "out of memory: lower --memory or --threads"}, json);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "gravure: error: internal: %s\n", error.what());
-    return 3;
+    return report({gravure::ErrorCode::io, std::string("internal: ") + error.what()}, json);
   }
 }

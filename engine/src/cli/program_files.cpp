@@ -25,7 +25,11 @@ std::vector<fs::path> places_of(const SourceImage& source, const ProgramHeader& 
     const fs::path job = fs::path(program_path).parent_path() / header.job_path;
     return {job.parent_path() / source.path, fs::path(header.job_path).parent_path() / source.path};
   }
-  return {fs::path(images_folder) / source.path, fs::path(images_folder) / fs::path(source.path).filename()};
+  std::vector<fs::path> places = {fs::path(images_folder) / source.path};
+  if (const fs::path name = fs::path(source.path).filename(); name != source.path) {
+    places.push_back(fs::path(images_folder) / name);
+  }
+  return places;
 }
 
 }  // namespace

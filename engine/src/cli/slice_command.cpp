@@ -38,10 +38,10 @@ Result<LayerStack> stack_of(const Options& options, const ImageInfo& info) {
   stack.fires = options.fires == "white" ? Fires::white : Fires::black;
   stack.levels = options.levels;
   if (!options.depth_min.empty()) {
-    GRAVURE_TRY(stack.depth_min, parse_decimal(options.depth_min));
+    GRAVURE_TRY(stack.depth_min, decimal_option("--depth-min", options.depth_min));
   }
   if (!options.depth_max.empty()) {
-    GRAVURE_TRY(stack.depth_max, parse_decimal(options.depth_max));
+    GRAVURE_TRY(stack.depth_max, decimal_option("--depth-max", options.depth_max));
   }
   for (std::int64_t level = 0; level < options.levels; ++level) {
     stack.layers.push_back({options.map, 0, level});

@@ -40,8 +40,15 @@ CLI::Validator integer_from(std::int64_t least, std::uint64_t most) {
 }
 
 Result<Rational> decimal_option(const std::string& option, const std::string& text) {
+  static const Rational kMost = Integer(1'000'000'000'000'000'000);
   Result<Rational> value = parse_decimal(text);
-  return value ? value : Error{value.error().code, option + " " + value.error().message};
+  if (!value) {
+    return Error{value.error().code, option + " " + value.error().message};
+  }
+  if (abs(value.value()) > kMost) {
+    return Error{ErrorCode::out_of_range, option + " " + text.substr(0, 40) + ": must be from -1e18 to 1e18"};
+  }
+  return value;
 }
 
 void print(const std::string& text) {
@@ -72,6 +79,7 @@ namespace {
 
 CancelToken the_token;
 std::atomic<bool> token_watched{false};
+std::atomic<bool> json_promised{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "interrupt() runs in a signal handler");
 
 }  // namespace
@@ -81,8 +89,18 @@ CancelToken& cancel_token() {
   return the_token;
 }
 
+void promise_json() {
+  json_promised = true;
+}
+
 void interrupt() {
   if (!token_watched) {
+    if (json_promised) {
+      constexpr std::string_view kDocument =
+          "{\n  \"error\": {\n    \"code\": \"cancelled\",\n    \"message\": \"stopped; nothing was written\"\n  "
+          "}\n}\n";
+      static_cast<void>(!::write(STDOUT_FILENO, kDocument.data(), kDocument.size()));
+    }
     ::_exit(exit_status(ErrorCode::cancelled));
   }
   the_token.cancel();

@@ -54,6 +54,8 @@ Json json_ratio(const Rational& value);
 
 /// Set by Ctrl-C. Asking for it says that somebody will look at it from now on.
 CancelToken& cancel_token();
+/// From now on interrupt() owes standard output a document.
+void promise_json();
 /// What Ctrl-C does: sets the token where somebody looks at it, else ends the program with the status of `cancelled`.
 void interrupt();
 

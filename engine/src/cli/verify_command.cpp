@@ -213,7 +213,10 @@ Result<int> verify_program(const std::string& path, const Options& options, cons
 bool is_program(const std::string& path) {
   constexpr std::string_view kSignature = "gravure program\n";
   std::array<char, kSignature.size()> begin = {};
-  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored)) {  // a pipe would wait for its writer
+    std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  }
   return fs::path(path).extension() == ".grv" || std::string_view(begin.data(), begin.size()) == kSignature;
 }
 
@@ -221,8 +224,9 @@ bool is_program(const std::string& path) {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "gravure-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) {
+    std::error_code failed;
+    std::string name = (fs::temp_directory_path(failed) / "gravure-XXXXXX").string();
+    if (!failed && ::mkdtemp(name.data()) != nullptr) {
       path_ = name;
     }
   }
@@ -241,6 +245,7 @@ class TemporaryFolder {
 };
 
 Result<int> verify_job(const Options& options, const Command& command) {
+  cancel_token();  // before there is a folder: from here on Ctrl-C takes it away again
   const TemporaryFolder folder;
   if (folder.path().empty()) {
     return Error{ErrorCode::io, "cannot make a temporary folder: set TMPDIR to a folder with room for the program"};

@@ -13,8 +13,28 @@
 namespace gravure {
 namespace {
 
+/// What the user can do about it, if we know.
+const char* remedy(int reason) {
+  switch (reason) {
+    case ENOENT:
+    case ENOTDIR:
+      return ": check the path";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return ": check its permissions";
+    case ENOSPC:
+    case EDQUOT:
+      return ": make room or choose another disk";
+    case ENAMETOOLONG:
+      return ": give a shorter name";
+    default:
+      return "";
+  }
+}
+
 Error system_error(const std::string& what, const std::string& path) {
-  return {ErrorCode::io, path + ": " + what + ": " + std::strerror(errno)};
+  return {ErrorCode::io, path + ": " + what + ": " + std::strerror(errno) + remedy(errno)};
 }
 
 /// Closes on every way out.
@@ -92,6 +112,10 @@ Result<FileOutput> FileOutput::create(const std::string& path) {
   if (path.empty() || std::filesystem::is_directory(path, ignored)) {
     return Error{ErrorCode::io, "output \"" + path + "\" is a folder: give a file name"};
   }
+  if (path == "-") {
+    return Error{ErrorCode::bad_argument,
+                 "output \"-\": a file appears whole or not at all, standard output cannot; give a file name"};
+  }
   // Renaming onto a link, device or pipe would replace it, not write to it.
   const std::filesystem::file_status there = std::filesystem::symlink_status(path, ignored);
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
@@ -139,10 +163,8 @@ Result<void> write_file(const std::string& path, std::string_view content) {
 Error open_error(const std::string& path, int reason) {
   const bool mendable = reason == ENOENT || reason == ENOTDIR || reason == EACCES || reason == EISDIR ||
                         reason == ELOOP || reason == ENAMETOOLONG || reason == ENXIO;
-  const char* remedy = reason == ENOENT || reason == ENOTDIR ? ": check the path"
-                       : reason == EACCES                    ? ": check its permissions"
-                                                             : "";
-  return {mendable ? ErrorCode::bad_file : ErrorCode::io, path + ": cannot open: " + std::strerror(reason) + remedy};
+  return {mendable ? ErrorCode::bad_file : ErrorCode::io,
+          path + ": cannot open: " + std::strerror(reason) + remedy(reason)};
 }
 
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
@@ -156,7 +178,7 @@ Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
   }
   struct stat status = {};
   if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
-    return Error{ErrorCode::bad_file, path + ": is not a regular file"};
+    return Error{ErrorCode::bad_file, path + ": is not a regular file; give the path of one"};
   }
   if (static_cast<std::uint64_t>(status.st_size) > max_bytes) {
     return too_large();

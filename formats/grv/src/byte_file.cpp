@@ -110,7 +110,7 @@ Result<std::unique_ptr<ByteFile>> open_file(const std::string& path, OpenFor pur
   auto file = std::make_unique<DiskFile>(fd, shown_path);
   struct stat status = {};
   if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
-    return Error{ErrorCode::bad_file, shown_path + ": is not a regular file"};
+    return Error{ErrorCode::bad_file, shown_path + ": is not a regular file; give the path of a program"};
   }
   return std::unique_ptr<ByteFile>(std::move(file));
 }

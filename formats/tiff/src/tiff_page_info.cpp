@@ -68,6 +68,26 @@ Result<void> read_layout(const TiffHandle& handle, const std::string& place, Tif
   return {};
 }
 
+const char* photometric_name(std::uint64_t photometric) {
+  switch (photometric) {
+    case PHOTOMETRIC_RGB:
+      return "colour";
+    case PHOTOMETRIC_MASK:
+      return "transparency mask";
+    case PHOTOMETRIC_SEPARATED:
+      return "amount of ink";
+    case PHOTOMETRIC_YCBCR:
+    case PHOTOMETRIC_CIELAB:
+    case PHOTOMETRIC_ICCLAB:
+    case PHOTOMETRIC_ITULAB:
+      return "brightness and colour";
+    case PHOTOMETRIC_CFA:
+      return "colour filter of a camera";
+    default:
+      return "not known here";
+  }
+}
+
 Result<void> read_meaning(const TiffHandle& handle, const std::string& place, TiffPageInfo& info) {
   const TiffRawTags raw = read_raw_tags(TIFFFileno(handle.get()), TIFFCurrentDirOffset(handle.get()));
   const std::uint64_t orientation =
@@ -85,7 +105,13 @@ Result<void> read_meaning(const TiffHandle& handle, const std::string& place, Ti
                    "black, `-s 262 0` if 0 is white");
   }
   info.zero_is_white = *photometric == PHOTOMETRIC_MINISWHITE;
-  info.palette = raw.photometric.value_or(*photometric) == PHOTOMETRIC_PALETTE;
+  const std::uint64_t meaning = raw.photometric.value_or(*photometric);
+  info.palette = meaning == PHOTOMETRIC_PALETTE;
+  if (info.samples_per_pixel == 1 && meaning > PHOTOMETRIC_MINISBLACK && !info.palette) {
+    return refused(place, "PhotometricInterpretation " + std::to_string(meaning) + " (" + photometric_name(meaning) +
+                              "): only 0 (0 is white) and 1 (0 is black) say what one sample a pixel means; save it as "
+                              "greyscale or 1 bit, or if it is that run `tiffset -s 262 1` on the file");
+  }
   return {};
 }
 

@@ -114,7 +114,8 @@ Result<TiffPageList> walk(const ReadOnlyFile& file, const std::string& path, std
   const std::size_t have = file.read_at(0, header.data(), 16) ? 16 : (file.read_at(0, header.data(), 8) ? 8 : 0);
   const auto layout = have == 0 ? std::nullopt : parse_layout(header.data());
   if (!layout || (layout->big && have < 16)) {
-    return Error{ErrorCode::bad_file, path + ": is not a TIFF file (it begins with none of its four signatures)"};
+    return Error{ErrorCode::bad_file,
+                 path + ": is not a TIFF file (it begins with none of its four signatures) or ends within its header"};
   }
   TiffPageList pages;
   pages.file_bytes = file_bytes;

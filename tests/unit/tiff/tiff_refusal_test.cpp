@@ -96,6 +96,17 @@ void write_other(const std::string& path, std::uint16_t bits, std::uint16_t samp
   TIFFClose(tiff);
 }
 
+TEST(BilevelTiffRefuses, OneSampleThatIsNeitherWhiteNorBlack) {
+  const TempFolder folder;
+  const std::string path = folder / "p.tif";
+  for (const int bits : {1, 8}) {
+    for (const int photometric : {2, 4, 5, 8, 32844, 9999, 65535}) {
+      write_other(path, static_cast<std::uint16_t>(bits), 1, static_cast<std::uint16_t>(photometric));
+      expect_refused(path, "PhotometricInterpretation " + std::to_string(photometric));
+    }
+  }
+}
+
 TEST(BilevelTiffRefuses, GreyColourAlphaAndPalettes) {
   const TempFolder folder;
   const std::string path = folder / "c.tif";
