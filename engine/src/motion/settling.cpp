@@ -49,17 +49,22 @@ class Envelope {
     return time_s * (1 + 1e-13);
   }
 
-  /// A little later than time_s() and found sooner: what is left above the tolerance decays at least as the slowest.
+  /// A little later than time_s() and found sooner: what is damped decays at least as the slowest. Newton goes on until
+  /// that says little more than Newton itself; beside an undamped or slow mode that just fits the tolerance it would
+  /// say nothing.
   double time_bound_s() const noexcept {
     double time_s = start_s();
     for (int step = 0; step < 100; ++step) {
       const Sum sum = at(time_s);
-      const double excess = sum.value - tolerance_;
-      if (excess <= 0.05 * tolerance_) {
-        time_s += std::max(0.0, excess) / (tolerance_ - undamped_) / slowest_decay_;
+      const double excess = std::max(0.0, sum.value - tolerance_);
+      const double advance = excess / sum.falling;
+      const double over = excess / (tolerance_ - undamped_);
+      const double bound = (over < 0.05 ? over : std::log1p(over)) / slowest_decay_;
+      if (excess <= 0.05 * tolerance_ && (bound <= 4 * advance || excess <= 1e-12 * tolerance_)) {
+        time_s += bound;
         break;
       }
-      time_s += excess / sum.falling;
+      time_s += advance;
     }
     return time_s * (1 + 1e-13);
   }

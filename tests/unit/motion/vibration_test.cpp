@@ -283,6 +283,29 @@ TEST(PositioningTime, IsNeverWhereAnUndampedModeExceedsTheBand) {
   EXPECT_EQ(wide.positioning_time_s, wide.access_time_s);
 }
 
+// A mode that hardly decays and just fits the band, beside two that decay: the search must not start ages after the
+// last exit (it would take hours).
+TEST(PositioningTime, IsFoundBesideASlowModeThatJustFitsTheBand) {
+  for (const double decay : {0.0, 1e-12, 1e-6, 1e-3}) {
+    ResidualSignal signal;
+    signal.add({{-1.1, -0.8}, 51, 221});
+    signal.add({{0.002, -0.0008}, 18, 545});
+    signal.add({{-326, 707}, decay, 6.283});
+    const double slow = std::abs(signal.terms()[2].amplitude);
+    for (const double room : {1e-2, 1e-4, 1e-6, 1e-9, 1e-12}) {
+      const double tolerance = slow * (1 + room);
+      const double exit_s = signal.last_exit_s(tolerance);
+      double last_s = 0;
+      for (int k = 0; k <= 500'000; ++k) {
+        last_s = std::abs(signal.at(k * 1e-5)) > tolerance ? k * 1e-5 : last_s;
+      }
+      EXPECT_GE(exit_s, last_s) << decay << " " << room;
+      EXPECT_LE(exit_s, last_s + 1e-5) << decay << " " << room;
+      EXPECT_LE(exit_s, signal.envelope_time_s(tolerance) * (1 + 1e-9)) << decay << " " << room;
+    }
+  }
+}
+
 TEST(PositioningTime, OfPositionUsesTheDeviation) {
   const auto input = input_of(plan_profile(indexing(375, 14000, 13500, 82.5)).value());
   const Settling settling = settle(fit_b(), input, {BandOf::position, 1e-3}).value();
