@@ -4,6 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "mode_constants.hpp"
 
 namespace gravure::motion {
 namespace {
@@ -37,19 +40,52 @@ struct Normal {
   double sum_of_squares = 0;
 };
 
+/// exp(-s t) (cos w t + i sin w t) of every mode, sample by sample: one multiplication each, from exact values every
+/// few samples so that rounding does not gather.
+class Oscillations {
+ public:
+  Oscillations(const VectorXd& p, double period_s) : p_(p), period_s_(period_s) {
+    for (Index m = 1; m < p.size(); m += 4) {
+      turn_.push_back(exact(m, period_s));
+      now_.emplace_back(1, 0);
+    }
+  }
+  const std::vector<std::complex<double>>& at(std::size_t sample) {
+    constexpr std::size_t kExactEvery = 64;
+    for (std::size_t i = 0; i < now_.size() && sample > 0; ++i) {
+      const auto m = static_cast<Index>(1 + 4 * i);
+      now_[i] =
+          sample % kExactEvery == 0 ? exact(m, static_cast<double>(sample) * period_s_) : times(now_[i], turn_[i]);
+    }
+    return now_;
+  }
+
+ private:
+  std::complex<double> exact(Index m, double t) const {
+    const double size = std::exp(-p_[m] * t);
+    return {size * std::cos(p_[m + 1] * t), size * std::sin(p_[m + 1] * t)};
+  }
+  const VectorXd& p_;
+  double period_s_;
+  std::vector<std::complex<double>> turn_;
+  std::vector<std::complex<double>> now_;
+};
+
 /// `linear_only`: derivatives to s and w are left out, so that the step solves offset, A and B.
 Normal normal_equations(const Series& series, const VectorXd& p, bool linear_only) {
   const Index size = p.size();
   Normal normal{MatrixXd::Zero(size, size), VectorXd::Zero(size), 0};
   VectorXd row(size);
+  Oscillations oscillations(p, series.period_s);
   for (std::size_t k = 0; k < series.values.size(); ++k) {
     const double t = static_cast<double>(k) * series.period_s;
+    const auto& modes = oscillations.at(k);
     double model = p[0];
     row[0] = 1;
-    for (Index m = 1; m < size; m += 4) {
-      const double decay = std::exp(-p[m] * t);
-      const double cosine = decay * std::cos(p[m + 1] * t);
-      const double sine = decay * std::sin(p[m + 1] * t);
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const auto m = static_cast<Index>(1 + 4 * i);
+      const double cosine = modes[i].real();
+      const double sine = modes[i].imag();
       const double value = p[m + 2] * cosine + p[m + 3] * sine;
       model += value;
       row[m] = linear_only ? 0 : -t * value;
@@ -85,34 +121,49 @@ bool oscillates(const std::complex<double>& pole, double period_s, std::size_t c
 
 }  // namespace
 
-std::vector<std::complex<double>> estimate_poles(const Series& series, std::size_t count, std::size_t stride) {
+SignalSpace::SignalSpace(const Series& series, std::size_t stride) : series_(series), stride_(stride) {
   const auto lag = static_cast<Index>(stride);
   const auto size = static_cast<Index>(series.values.size());
   const Index lags = std::min(kLags, size / (2 * lag));
+  if (lags < 2) {
+    return;
+  }
+  const Index rows = size - (lags - 1) * lag;
+  const double mean = mean_of(series.values);
+  const auto value = [&](Index k) { return series.values[static_cast<std::size_t>(k)] - mean; };
+  // Sums of products of two windows; one further along the diagonal differs at its ends alone.
+  MatrixXd gram = MatrixXd::Zero(lags, lags);
+  for (Index j = 0; j < lags; ++j) {
+    double sum = 0;
+    for (Index k = 0; k < rows; ++k) {
+      sum += value(k) * value(k + j * lag);
+    }
+    gram(j, 0) = sum;
+    for (Index i = 1; i + j < lags; ++i) {
+      for (Index k = (i - 1) * lag; k < i * lag; ++k) {
+        sum += value(k + rows) * value(k + rows + j * lag) - value(k) * value(k + j * lag);
+      }
+      gram(i + j, i) = sum;
+    }
+  }
+  vectors_ = Eigen::SelfAdjointEigenSolver<MatrixXd>(gram).eigenvectors();
+}
+
+std::vector<std::complex<double>> SignalSpace::poles(std::size_t count) const {
+  const Index lags = vectors_.cols();
   const auto order = static_cast<Index>(2 * count + 1);  // one for the offset
   if (lags < order + 2) {
     return {};
   }
-  const Index rows = size - (lags - 1) * lag;
-  const double mean = mean_of(series.values);
-  MatrixXd gram = MatrixXd::Zero(lags, lags);
-  VectorXd window(lags);
-  for (Index k = 0; k < rows; ++k) {
-    for (Index i = 0; i < lags; ++i) {
-      window[i] = series.values[static_cast<std::size_t>(k + i * lag)] - mean;
-    }
-    add_outer_product(gram, window);
-  }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> spectrum(gram);
-  const MatrixXd space = spectrum.eigenvectors().rightCols(order);
+  const MatrixXd space = vectors_.rightCols(order);
   const MatrixXd upper = space.topRows(lags - 1);
   const MatrixXd shift = (upper.transpose() * upper).ldlt().solve(upper.transpose() * space.bottomRows(lags - 1));
   const Eigen::EigenSolver<MatrixXd> turns(shift, false);
   std::vector<std::complex<double>> poles;
-  const double lag_s = series.period_s * static_cast<double>(stride);
+  const double lag_s = series_.period_s * static_cast<double>(stride_);
   for (Index i = 0; i < order; ++i) {
     const std::complex<double> pole = std::log(turns.eigenvalues()[i]) / lag_s;
-    if (oscillates(pole, series.period_s, series.values.size())) {
+    if (oscillates(pole, series_.period_s, series_.values.size())) {
       poles.emplace_back(std::min(pole.real(), -1e-3 * pole.imag()), pole.imag());
     }
   }
@@ -120,18 +171,37 @@ std::vector<std::complex<double>> estimate_poles(const Series& series, std::size
   return poles;
 }
 
-DampedFit fit_damped(const Series& series, const std::vector<std::complex<double>>& poles) {
-  DampedFit fit;
+namespace {
+
+/// The parameters with these poles, offset and amplitudes by least squares.
+VectorXd parameters_of(const Series& series, const std::vector<std::complex<double>>& poles) {
   VectorXd p = VectorXd::Zero(1 + 4 * static_cast<Index>(poles.size()));
   for (std::size_t m = 0; m < poles.size(); ++m) {
     p[1 + 4 * static_cast<Index>(m)] = -poles[m].real();
     p[2 + 4 * static_cast<Index>(m)] = poles[m].imag();
   }
   p += step_of(normal_equations(series, p, true), 1e-14);
+  return p;
+}
+
+}  // namespace
+
+double misfit(const Series& series, const std::vector<std::complex<double>>& poles) {
+  const double squares = normal_equations(series, parameters_of(series, poles), true).sum_of_squares;
+  return std::isfinite(squares) ? squares : std::numeric_limits<double>::infinity();
+}
+
+DampedFit fit_damped(const Series& series, const std::vector<std::complex<double>>& poles) {
+  DampedFit fit;
+  VectorXd p = parameters_of(series, poles);
   Normal now = normal_equations(series, p, false);
   double damping = 1e-3;
   for (int step = 0; step < 60 && damping < 1e10; ++step) {
-    const VectorXd trial = p + step_of(now, damping);
+    const VectorXd change = step_of(now, damping);
+    if (change.dot(now.right) <= 1e-13 * now.sum_of_squares) {
+      break;  // even a straight slope would gain nothing
+    }
+    const VectorXd trial = p + change;
     const Normal next = trial.allFinite() ? normal_equations(series, trial, false) : now;
     if (trial.allFinite() && next.sum_of_squares < now.sum_of_squares) {
       const bool done = now.sum_of_squares - next.sum_of_squares < 1e-13 * now.sum_of_squares;

@@ -21,9 +21,21 @@ struct DampedFit {
   std::size_t modes() const noexcept { return static_cast<std::size_t>(parameters.size() - 1) / 4; }
 };
 
-/// Poles -s + i w (w > 0) of at most `count` modes by ESPRIT with a lag of `stride` samples. Fewer where the data have
-/// fewer that oscillate.
-std::vector<std::complex<double>> estimate_poles(const Series& series, std::size_t count, std::size_t stride);
+/// What the windows of a series have in common, for ESPRIT with a lag of `stride` samples. Refers to the series.
+class SignalSpace {
+ public:
+  SignalSpace(const Series& series, std::size_t stride);
+  /// Poles -s + i w (w > 0) of at most `count` modes. Fewer where the data have fewer that oscillate.
+  std::vector<std::complex<double>> poles(std::size_t count) const;
+
+ private:
+  const Series& series_;
+  std::size_t stride_;
+  Eigen::MatrixXd vectors_;  ///< by rising share
+};
+
+/// Sum of squares that is left with these poles and the best amplitudes.
+double misfit(const Series& series, const std::vector<std::complex<double>>& poles);
 
 /// Levenberg-Marquardt from the given poles.
 DampedFit fit_damped(const Series& series, const std::vector<std::complex<double>>& poles);

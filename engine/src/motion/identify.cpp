@@ -77,6 +77,28 @@ bool plausible(const DampedFit& fit, double period_s) {
   return true;
 }
 
+using Poles = std::vector<std::complex<double>>;
+
+/// Poles of so many modes by every stride, those first that leave the least; only a few are worth a fit.
+std::vector<Poles> candidates(const Series& series, const std::vector<SignalSpace>& spaces, std::size_t count) {
+  constexpr std::size_t kMostCandidates = 3;
+  std::vector<std::pair<double, Poles>> found;
+  for (const SignalSpace& space : spaces) {
+    Poles poles = space.poles(count);
+    poles.resize(std::min(poles.size(), count));
+    if (poles.size() == count) {
+      const double left = misfit(series, poles);
+      found.emplace_back(left, std::move(poles));
+    }
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Poles> best;
+  for (std::size_t i = 0; i < std::min(found.size(), kMostCandidates); ++i) {
+    best.push_back(std::move(found[i].second));
+  }
+  return best;
+}
+
 /// The best fit over numbers of modes and strides.
 std::optional<DampedFit> best_fit(const Series& series, std::uint32_t modes, double power) {
   std::optional<DampedFit> best;
@@ -85,17 +107,14 @@ std::optional<DampedFit> best_fit(const Series& series, std::uint32_t modes, dou
     best = fit_damped(series, {});
     best_criterion = information_criterion(*best, series, power);
   }
+  std::vector<SignalSpace> spaces;
+  for (std::size_t stride = 1; stride * 24 < series.values.size(); stride *= 2) {
+    spaces.emplace_back(series, stride);
+  }
   const std::size_t low = modes == 0 ? 1 : modes;
   const std::size_t high = modes == 0 ? kMostModes : modes;
   for (std::size_t count = low; count <= high; ++count) {
-    for (std::size_t stride = 1; stride * 24 < series.values.size(); stride *= 2) {
-      auto poles = estimate_poles(series, count, stride);
-      if (poles.size() > count) {
-        poles.resize(count);
-      }
-      if (poles.size() != count) {
-        continue;
-      }
+    for (const Poles& poles : candidates(series, spaces, count)) {
       DampedFit fit = fit_damped(series, poles);
       const double criterion = information_criterion(fit, series, power);
       // A criterion better by less than 10 is no evidence for more parameters.
