@@ -44,8 +44,13 @@ int report(const Error& error, bool json) {
 
 /// "gravure --help", or that of the verb that was given.
 std::string help_of(const CLI::App& app) {
-  const std::vector<CLI::App*> verbs = app.get_subcommands();
-  return "gravure " + (verbs.empty() ? "" : verbs.front()->get_name() + " ") + "--help";
+  std::string verbs;
+  const CLI::App* level = &app;
+  while (!level->get_subcommands().empty()) {
+    level = level->get_subcommands().front();
+    verbs += level->get_name() + " ";
+  }
+  return "gravure " + verbs + "--help";
 }
 
 /// The verb that was given, as deep as it goes: "motion" has verbs of its own. The parser takes an unknown one for a

@@ -14,81 +14,6 @@ namespace {
 
 using motion::Profile;
 
-/// Update time of the samples that are written; plots take at most a few thousand.
-struct ProfileOptions {
-  MoveOptions move;
-  std::optional<double> target_velocity;
-  OutputOptions output;
-};
-
-/// To a target that stands, or to one that moves.
-Result<Profile> plan_to_target(const ProfileOptions& options) {
-  if (!options.target_velocity) {
-    return plan_move(options.move);
-  }
-  if (!options.move.jerk_up) {
-    return Error{ErrorCode::bad_argument, "--target-velocity: needs jerk limits (--jerk-up), not an S factor"};
-  }
-  return motion::plan_rendezvous(jerk_request_of(options.move), *options.target_velocity);
-}
-
-std::string profile_text(const Profile& profile) {
-  std::string text = fmt::format("access time   {:.6f} ms\n", profile.access_time_s() * 1e3);
-  text += fmt::format("peak          {:.6g} mm/s, up {:.6g} and down {:.6g} mm/s^2\n", profile.peak_velocity_mm_s,
-                      profile.peak_acceleration_up_mm_s2, profile.peak_acceleration_down_mm_s2);
-  const auto& reduced = profile.reduced;
-  if (reduced.velocity || reduced.acceleration()) {
-    text += fmt::format("not reached  {}{}{}\n", reduced.velocity ? " velocity" : "",
-                        reduced.acceleration_up ? " acceleration_up" : "",
-                        reduced.acceleration_down ? " acceleration_down" : "");
-  }
-  text +=
-      fmt::format("{:>8} {:>14} {:>16} {:>14} {:>14}\n", "segment", "from ms", "acceleration", "velocity", "position");
-  for (std::size_t k = 0; k < 7; ++k) {
-    text += fmt::format("{:>8} {:>14.6f} {:>16.6f} {:>14.6f} {:>14.9f}\n", k + 1, profile.times_s[k] * 1e3,
-                        profile.acceleration_mm_s2[k], profile.velocity_mm_s[k], profile.position_mm[k]);
-  }
-  return text;
-}
-
-std::vector<formats::Curve> profile_curves(const Profile& profile, int points) {
-  std::vector<formats::Curve> curves{
-      {"position mm", {}, {}}, {"velocity mm/s", {}, {}}, {"acceleration mm/s^2", {}, {}}};
-  for (int i = 0; i <= points; ++i) {
-    const double time_s = profile.access_time_s() * i / points;
-    const motion::State state = profile.at(time_s);
-    const double values[] = {state.position_mm, state.velocity_mm_s, state.acceleration_mm_s2};
-    for (std::size_t c = 0; c < curves.size(); ++c) {
-      curves[c].x.push_back(time_s * 1e3);
-      curves[c].y.push_back(values[c]);
-    }
-  }
-  return curves;
-}
-
-Result<int> run_profile(const ProfileOptions& options, bool json) {
-  GRAVURE_TRY(const Profile profile, plan_to_target(options));
-  std::string csv;
-  if (!options.output.csv.empty()) {
-    GRAVURE_TRY(const auto samples, motion::sample_profile(profile, options.move.update_us));
-    csv = formats::samples_to_csv(samples);
-  }
-  GRAVURE_CHECK(write_outputs(options.output, csv, "Motion profile", "ms", profile_curves(profile, 1000)));
-  print(json ? formats::profile_to_json(profile) : profile_text(profile));
-  return kDone;
-}
-
-void add_profile(CLI::App& parent, Command& command) {
-  CLI::App* verb = add_verb(parent, command, "profile", "Plan a jerk-limited move");
-  const auto options = std::make_shared<ProfileOptions>();
-  add_move_options(*verb, options->move, true);
-  verb->add_option("--target-velocity", options->target_velocity,
-                   "The target moves at this velocity in mm/s; the stroke is its distance at the start");
-  add_output_options(*verb, options->output);
-  verb->callback(
-      [&command, options] { command.run = [&command, options] { return run_profile(*options, command.json); }; });
-}
-
 struct RespondOptions {
   MoveOptions move;
   ModeOptions modes;
@@ -106,9 +31,6 @@ Result<std::vector<motion::InputJump>> respond_input(const RespondOptions& optio
   if (options.quantised) {
     GRAVURE_TRY(input, motion::quantised_input_of(profile, options.move.update_us));
   }
-  if (!(options.delay_us >= 0 && options.delay_us <= 1e9)) {
-    return Error{ErrorCode::out_of_range, fmt::format("--delay-us {}: must be from 0 to 1e9", options.delay_us)};
-  }
   if (!options.shaper.empty()) {
     const auto kind = options.shaper == "zv" ? motion::ShaperKind::zv : motion::ShaperKind::zvd;
     GRAVURE_TRY(const auto shaper, motion::make_shaper(kind, modes));
@@ -124,9 +46,6 @@ Result<void> write_response(const RespondOptions& options, const std::vector<mot
   const double until_s = options.until_ms
                              ? *options.until_ms * 1e-3
                              : 1.5 * std::min(settling.positioning_time_s, 4 * settling.access_time_s) + 1e-6;
-  if (!(until_s > 0 && until_s <= 1e9)) {
-    return Error{ErrorCode::out_of_range, fmt::format("--until-ms {}: must be above 0, to 1e12", until_s * 1e3)};
-  }
   std::vector<formats::Curve> curves(2);
   curves[0].name = "carried acceleration mm/s^2";
   curves[1].name = "deviation mm";
@@ -175,8 +94,11 @@ void add_respond(CLI::App& parent, Command& command) {
   verb->add_flag("--quantised", options->quantised, "As a servo makes it that takes one set-point an update");
   verb->add_option("--shaper", options->shaper, "Run the move through an input shaper for these modes: zv or zvd")
       ->check(CLI::IsMember({"zv", "zvd"}));
-  verb->add_option("--delay-us", options->delay_us, "Dead time before the axis moves")->capture_default_str();
-  verb->add_option("--until-ms", options->until_ms, "End of the CSV and the figure (beyond the positioning time)");
+  verb->add_option("--delay-us", options->delay_us, "Dead time before the axis moves")
+      ->check(number_from(0, 1e9))
+      ->capture_default_str();
+  verb->add_option("--until-ms", options->until_ms, "End of the CSV and the figure (beyond the positioning time)")
+      ->check(number_from(1e-6, 1e12));
   add_output_options(*verb, options->output);
   verb->callback(
       [&command, options] { command.run = [&command, options] { return run_respond(*options, command.json); }; });
@@ -210,13 +132,18 @@ std::string search_text(const motion::SearchReport& report, double error_percent
     }
     text += "\n";
   }
+  if (report.grids) {
+    text += fmt::format("published grid: {} symmetric points, best {:.4f} ms; {} asymmetric ones, best {:.4f} ms\n",
+                        report.grids->symmetric.evaluated, report.grids->symmetric.best.positioning_time_s * 1e3,
+                        report.grids->asymmetric.evaluated, report.grids->asymmetric.best.positioning_time_s * 1e3);
+  }
   return text + fmt::format("{} profiles evaluated. {}\n", report.evaluated, report.verdict);
 }
 
 std::string search_csv(const motion::SearchReport& report) {
   std::string csv =
       "name,access_time_s,positioning_time_s,worst_positioning_time_s,envelope_time_s,v_mm_s,a_up_mm_s2,a_down_mm_s2,s_"
-      "factor\n";
+      "factor,residual\n";
   for (const motion::Alternative& row : report.alternatives) {
     const motion::Candidate c = row.profile.value_or(motion::Candidate{});
     csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", row.name, row.access_time_s, row.positioning_time_s,
@@ -243,7 +170,7 @@ Result<int> run_search(const SearchVerbOptions& options, bool json) {
   const motion::SFactorRequest request{
       {move.stroke_mm, best.v_mm_s, best.a_up_mm_s2, best.a_down_mm_s2, 0, 0}, best.s_factor, move.update_us};
   GRAVURE_TRY(const Profile profile, motion::plan_profile(request));
-  GRAVURE_CHECK(write_outputs(options.output, search_csv(report), "Best profile", "ms", profile_curves(profile, 1000)));
+  GRAVURE_CHECK(write_outputs(options.output, search_csv(report), "Best profile", "ms", profile_curves(profile)));
   print(json ? formats::search_to_json(report) : search_text(report, options.mode_error_percent));
   return kDone;
 }
@@ -251,18 +178,22 @@ Result<int> run_search(const SearchVerbOptions& options, bool json) {
 void add_search(CLI::App& parent, Command& command) {
   CLI::App* verb = add_verb(parent, command, "search", "The move with the shortest positioning time, beside shapers");
   const auto options = std::make_shared<SearchVerbOptions>();
-  verb->add_option("--stroke-mm", options->move.stroke_mm, "Distance to the target")->required();
-  verb->add_option("--v-max", options->move.v_max, "Velocity limit in mm/s")->required();
-  verb->add_option("--a-up", options->move.a_up, "Acceleration limit along the move in mm/s^2")->required();
-  verb->add_option("--a-down", options->move.a_down, "Acceleration limit against the move in mm/s^2 (as --a-up)");
-  verb->add_option("--jerk-max", options->jerk_max, "Jerk limit in mm/s^3 (none)");
-  verb->add_option("--update-us", options->move.update_us, "Update time of the controller")->capture_default_str();
+  add_number(*verb, "--stroke-mm", options->move.stroke_mm, "Distance to the target")->required();
+  add_number(*verb, "--v-max", options->move.v_max, "Velocity limit in mm/s")->required();
+  add_number(*verb, "--a-up", options->move.a_up, "Acceleration limit along the move in mm/s^2")->required();
+  add_number(*verb, "--a-down", options->move.a_down, "Acceleration limit against the move in mm/s^2 (as --a-up)");
+  add_number(*verb, "--jerk-max", options->jerk_max, "Jerk limit in mm/s^3 (none)");
+  add_number(*verb, "--update-us", options->move.update_us, "Update time of the controller")->capture_default_str();
   add_mode_options(*verb, options->modes);
-  verb->add_option("--mode-error-percent", options->mode_error_percent, "Error of the modes in the worst case")
+  add_number(*verb, "--mode-error-percent", options->mode_error_percent, "Error of the modes in the worst case")
       ->capture_default_str();
   verb->add_flag("--no-grid", options->no_grid, "Leave out the complete published grids");
-  verb->add_option("--seed", options->seed, "Of the random starting points")->capture_default_str();
-  verb->add_option("--effort", options->effort, "Multiplies the random starting points")->capture_default_str();
+  verb->add_option("--seed", options->seed, "Of the random starting points")
+      ->check(integer_from(0, std::numeric_limits<std::int64_t>::max()))
+      ->capture_default_str();
+  verb->add_option("--effort", options->effort, "Multiplies the random starting points")
+      ->check(integer_from(1, 1000))
+      ->capture_default_str();
   add_output_options(*verb, options->output);
   verb->callback(
       [&command, options] { command.run = [&command, options] { return run_search(*options, command.json); }; });
@@ -273,7 +204,7 @@ void add_search(CLI::App& parent, Command& command) {
 void add_motion_command(CLI::App& app, Command& command) {
   CLI::App* motion = app.add_subcommand("motion", "Moves that do not ring and rotary paths that do not turn back");
   motion->require_subcommand(1);
-  add_profile(*motion, command);
+  add_motion_profile(*motion, command);
   add_respond(*motion, command);
   add_search(*motion, command);
   add_motion_identify(*motion, command);

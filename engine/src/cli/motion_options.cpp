@@ -3,28 +3,21 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
+#include <limits>
 
 #include "gravure/core/file_output.hpp"
 
 namespace gravure::cli {
 namespace {
 
-Result<std::vector<double>> numbers_of(const std::string& text) {
-  std::vector<double> numbers;
-  const char* at = text.data();
-  const char* const end = text.data() + text.size();
-  while (true) {
-    double value = 0;
-    const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc{} || (next != end && *next != ',')) {
-      return Error{ErrorCode::bad_argument, "--mode " + text + ": must be f_hz,zeta or f_hz,zeta,participation"};
-    }
-    numbers.push_back(value);
-    if (next == end) {
-      return numbers;
-    }
-    at = next + 1;
-  }
+/// What `text` is as a decimal number; not finite where it is none, or one that a double does not hold.
+double number_of(const std::string& text) {
+  double value = 0;
+  const char* const from = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
+  const char* const to = text.data() + text.size();
+  const auto [end, error] = std::from_chars(from, to, value);
+  return error == std::errc{} && end == to ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 motion::Move move_of(const MoveOptions& options) {
@@ -34,19 +27,49 @@ motion::Move move_of(const MoveOptions& options) {
 
 }  // namespace
 
+CLI::Validator number_from(double least, double most) {
+  const bool bounded = most < std::numeric_limits<double>::max();
+  const std::string range = bounded ? fmt::format("{:g} to {:g}", least, most) : "";
+  const std::string wanted = bounded ? "a number from " + range : "a decimal number that a double can hold";
+  return CLI::Validator(
+      [least, most, wanted](std::string& text) {
+        const double value = number_of(text);
+        if (value >= least && value <= most) {
+          return std::string();
+        }
+        constexpr std::size_t kShown = 40;
+        return fmt::format("must be {}, not \"{}{}\"", wanted, text.substr(0, kShown),
+                           text.size() > kShown ? "..." : "");
+      },
+      range, "number");
+}
+
+Result<std::vector<double>> numbers_of(const std::string& option, const std::string& text, const std::string& form) {
+  std::vector<double> numbers;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    numbers.push_back(number_of(text.substr(from, to - from)));
+    if (!std::isfinite(numbers.back())) {
+      return Error{ErrorCode::bad_argument, fmt::format("{} {}: must be {}", option, text.substr(0, 80), form)};
+    }
+    from = to + 1;
+  }
+  return numbers;
+}
+
 void add_move_options(CLI::App& verb, MoveOptions& options, bool required) {
-  verb.add_option("--stroke-mm", options.stroke_mm, "Distance to the target")->required(required);
-  verb.add_option("--v-max", options.v_max, "Velocity limit in mm/s")->required(required);
-  verb.add_option("--a-up", options.a_up, "Acceleration limit along the move in mm/s^2")->required(required);
-  verb.add_option("--a-down", options.a_down, "Acceleration limit against the move in mm/s^2 (as --a-up)");
-  auto* s_factor = verb.add_option("--s-factor", options.s_factor, "Length of each jerk segment in updates (0)");
-  verb.add_option("--jerk-up", options.jerk_up, "Jerk limit along the move in mm/s^3, instead of --s-factor")
+  add_number(verb, "--stroke-mm", options.stroke_mm, "Distance to the target")->required(required);
+  add_number(verb, "--v-max", options.v_max, "Velocity limit in mm/s")->required(required);
+  add_number(verb, "--a-up", options.a_up, "Acceleration limit along the move in mm/s^2")->required(required);
+  add_number(verb, "--a-down", options.a_down, "Acceleration limit against the move in mm/s^2 (as --a-up)");
+  auto* s_factor = add_number(verb, "--s-factor", options.s_factor, "Length of each jerk segment in updates (0)");
+  add_number(verb, "--jerk-up", options.jerk_up, "Jerk limit along the move in mm/s^3, instead of --s-factor")
       ->excludes(s_factor);
-  verb.add_option("--jerk-down", options.jerk_down, "Jerk limit against the move in mm/s^3 (as --jerk-up)")
+  add_number(verb, "--jerk-down", options.jerk_down, "Jerk limit against the move in mm/s^3 (as --jerk-up)")
       ->needs("--jerk-up");
-  verb.add_option("--update-us", options.update_us, "Update time of the controller")->capture_default_str();
-  verb.add_option("--start-velocity", options.start_velocity, "Velocity at the start in mm/s")->capture_default_str();
-  verb.add_option("--end-velocity", options.end_velocity, "Velocity at the target in mm/s")->capture_default_str();
+  add_number(verb, "--update-us", options.update_us, "Update time of the controller")->capture_default_str();
+  add_number(verb, "--start-velocity", options.start_velocity, "Velocity at the start in mm/s")->capture_default_str();
+  add_number(verb, "--end-velocity", options.end_velocity, "Velocity at the target in mm/s")->capture_default_str();
 }
 
 motion::JerkRequest jerk_request_of(const MoveOptions& options) {
@@ -67,17 +90,18 @@ void add_mode_options(CLI::App& verb, ModeOptions& options) {
       ->required()
       ->allow_extra_args(false);
   auto* acceleration =
-      verb.add_option("--band-mm-s2", options.band_mm_s2, "Done when the acceleration stays within this");
-  verb.add_option("--band-mm", options.band_mm, "Done when the position stays within this")->excludes(acceleration);
+      add_number(verb, "--band-mm-s2", options.band_mm_s2, "Done when the acceleration stays within this");
+  add_number(verb, "--band-mm", options.band_mm, "Done when the position stays within this")->excludes(acceleration);
 }
 
 Result<std::vector<motion::Mode>> modes_of(const ModeOptions& options) {
   std::vector<motion::Mode> modes;
   std::vector<motion::FrequencyAndDamping> chain;
   for (const std::string& text : options.modes) {
-    GRAVURE_TRY(const std::vector<double> numbers, numbers_of(text));
+    const std::string form = "f_hz,zeta or f_hz,zeta,participation";
+    GRAVURE_TRY(const std::vector<double> numbers, numbers_of("--mode", text, form));
     if (numbers.size() < 2 || numbers.size() > 3) {
-      return Error{ErrorCode::bad_argument, "--mode " + text + ": must be f_hz,zeta or f_hz,zeta,participation"};
+      return Error{ErrorCode::bad_argument, fmt::format("--mode {}: must be {}", text.substr(0, 80), form)};
     }
     if (numbers.size() == 3) {
       modes.push_back({numbers[0], numbers[1], numbers[2]});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,17 @@
 #include "gravure/motion/settling.hpp"
 
 namespace gravure::cli {
+
+inline constexpr double kAnyNumber = std::numeric_limits<double>::max();
+/// Refuses what is no decimal number from `least` to `most`; with kAnyNumber for `most` any finite one goes, its range
+/// being checked with others'. Without it an option takes "nan", "0x10", and 1e-400 for 0.
+CLI::Validator number_from(double least, double most);
+template <class Number>
+CLI::Option* add_number(CLI::App& verb, const std::string& name, Number& number, const std::string& text) {
+  return verb.add_option(name, number, text)->check(number_from(-kAnyNumber, kAnyNumber));
+}
+/// The numbers of a list that --option was given, separated by commas; an error shows `form`.
+Result<std::vector<double>> numbers_of(const std::string& option, const std::string& text, const std::string& form);
 
 /// A move as it stands on the command line.
 struct MoveOptions {
@@ -50,6 +62,9 @@ struct OutputOptions {
   std::string plot;
   std::string plot_title;  ///< in place of the verb's own
 };
+
+/// Position, velocity and acceleration over the time in ms.
+std::vector<formats::Curve> profile_curves(const motion::Profile& profile);
 
 void add_output_options(CLI::App& verb, OutputOptions& options);
 /// Writes what was asked for.

@@ -11,6 +11,7 @@
 #include "gravure/motion/smooth_tool_path.hpp"
 #include "motion_command.hpp"
 #include "motion_options.hpp"
+#include "motion_surroundings.hpp"
 #include "program_files.hpp"
 
 namespace gravure::cli {
@@ -30,11 +31,8 @@ struct UnreverseOptions {
   bool choose_branches = false;
   std::vector<double> a_limits_deg;
   std::vector<double> c_limits_deg;
-  std::string surface;
-  motion::ToolShape shape;
-  double margin_mm = 0;
-  double c_step_deg = 1.5;
-  double c_most_deg = 30;
+  double shift_deg = 0.05;  ///< [C2]
+  SurroundingOptions around;
   OutputOptions output;
 };
 
@@ -47,6 +45,7 @@ struct ToolPath {
   std::vector<double> c_deg;    ///< the same, unwrapped
   std::vector<double> c_turns;  ///< whole turns to take off again for the program
   std::vector<motion::ToolPose> tools;
+  std::vector<motion::HeldStop> stops;  ///< blocks that move X, Y or Z alone
   motion::Vector3 rotary_centre_mm{};
 };
 
@@ -78,6 +77,17 @@ Result<void> choose_branches(const UnreverseOptions& options, ToolPath& path) {
   return {};
 }
 
+/// The tip on the workpiece of a block with the angles of block `k`.
+motion::ToolPose tool_at(const UnreverseOptions& options, const ToolPath& path, std::size_t k,
+                         const motion::Vector3& xyz) {
+  motion::ToolPose tool = motion::tool_of(
+      {xyz[0], xyz[1], xyz[2], path.read.a_deg[k] * kDegree, path.read.c_deg[k] * kDegree}, path.rotary_centre_mm);
+  if (!options.machine_frame) {
+    tool.centre_mm = xyz;
+  }
+  return tool;
+}
+
 Result<ToolPath> load_path(const UnreverseOptions& options) {
   ToolPath path;
   GRAVURE_TRY(path.text, read_file(options.program, kMostBytes));
@@ -93,15 +103,12 @@ Result<ToolPath> load_path(const UnreverseOptions& options) {
   path.a_deg = path.read.a_deg;
   path.c_deg = motion::unwrapped(path.read.c_deg, 360);
   for (std::size_t k = 0; k < path.a_deg.size(); ++k) {
-    const auto& xyz = path.read.xyz_mm[k];
-    motion::ToolPose tool = motion::tool_of(
-        {xyz[0], xyz[1], xyz[2], path.a_deg[k] * kDegree, path.read.c_deg[k] * kDegree}, path.rotary_centre_mm);
-    if (!options.machine_frame) {
-      tool.centre_mm = xyz;
-    }
-    path.tools.push_back(tool);
+    path.tools.push_back(tool_at(options, path, k, path.read.xyz_mm[k]));
     path.block.push_back(static_cast<double>(k));
     path.c_turns.push_back(path.c_deg[k] - path.read.c_deg[k]);
+  }
+  for (const motion::RotaryPath::Linear& linear : path.read.linear) {
+    path.stops.push_back({linear.block, tool_at(options, path, linear.block, linear.xyz_mm).centre_mm, linear.line});
   }
   if (options.choose_branches) {
     GRAVURE_CHECK(choose_branches(options, path));
@@ -110,15 +117,7 @@ Result<ToolPath> load_path(const UnreverseOptions& options) {
 }
 
 Result<motion::SmoothPath> smooth(const UnreverseOptions& options, const ToolPath& path) {
-  std::vector<motion::Vector3> points;
-  if (!options.surface.empty()) {
-    GRAVURE_TRY(const std::string text, read_file(options.surface, kMostBytes));
-    auto read = motion::parse_points_csv(text);
-    if (!read) {
-      return Error{read.error().code, options.surface + ": " + read.error().message};
-    }
-    points = std::move(read).value();
-  }
+  GRAVURE_TRY(const std::vector<motion::Vector3> points, surrounding_points(options.around, path.rotary_centre_mm));
   motion::SmoothPathRequest request{path.tools,
                                     path.a_deg,
                                     path.c_deg,
@@ -126,9 +125,9 @@ Result<motion::SmoothPath> smooth(const UnreverseOptions& options, const ToolPat
                                     options.tolerance_deg,
                                     options.control_points,
                                     options.ball_radius_mm,
-                                    {}};
-  request.around = {points, options.shape, options.margin_mm, options.c_step_deg * kDegree,
-                    options.c_most_deg * kDegree};
+                                    surroundings_of(options.around, points)};
+  request.stops = path.stops;
+  request.line_of_sample = path.read.line;
   auto smoothed = motion::smooth_tool_path(request);
   if (!smoothed) {
     return Error{smoothed.error().code, options.program + ": " + smoothed.error().message};
@@ -164,6 +163,9 @@ std::string unreversed_text(const std::vector<formats::UnreversedAxis>& axes, co
     text += fmt::format("{}: {} of {} reversals kept, {} control points, at most {:.4f} degrees off (rms {:.4f})\n",
                         axis.name, axis.result.reversals_after, axis.result.reversals_before,
                         axis.result.control_points, axis.result.largest_deviation, axis.result.rms_deviation);
+    text += fmt::format(
+        "   by the published shift rule ({} degrees): {} kept, at most {:.4f} degrees off (rms {:.4f})\n",
+        axis.shift_deg, axis.shifted.reversals_after, axis.shifted.largest_deviation, axis.shifted.rms_deviation);
   }
   if (tool.clearance_mm) {
     text += fmt::format("clearance {:.4f} mm; C turned out of the way at {} blocks by up to {:.3f} degrees\n",
@@ -179,36 +181,47 @@ std::string unreversed_text(const std::vector<formats::UnreversedAxis>& axes, co
   return text;
 }
 
-std::string path_csv(const ToolPath& path, const motion::SmoothPath& smoothed) {
+/// The published rule takes the turns off again as well.
+std::string path_csv(const ToolPath& path, const motion::SmoothPath& smoothed,
+                     const std::vector<formats::UnreversedAxis>& axes) {
   const std::vector<double> c_deg = program_c(path, smoothed);
-  std::string csv = "line,a_before_deg,a_deg,c_before_deg,c_deg,x_mm,y_mm,z_mm\n";
+  std::string csv = "line,a_before_deg,a_deg,c_before_deg,c_deg,x_mm,y_mm,z_mm,a_shifted_deg,c_shifted_deg\n";
   for (std::size_t k = 0; k < path.block.size(); ++k) {
     const motion::Vector3& tip = smoothed.tools[k].centre_mm;
-    csv += fmt::format("{},{},{},{},{},{},{},{}\n", path.read.line[k], path.read.a_deg[k], smoothed.a.angle[k],
-                       path.read.c_deg[k], c_deg[k], tip[0], tip[1], tip[2]);
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", path.read.line[k], path.read.a_deg[k], smoothed.a.angle[k],
+                       path.read.c_deg[k], c_deg[k], tip[0], tip[1], tip[2], axes[0].shifted.angle[k],
+                       axes[1].shifted.angle[k] - path.c_turns[k]);
   }
   return csv;
+}
+
+formats::UnreversedAxis axis_of(const UnreverseOptions& options, const std::string& name,
+                                const motion::Unreversed& result, const std::vector<double>& programmed) {
+  return {name, options.tolerance_deg, result, options.shift_deg,
+          motion::published_shift_between_turns(programmed, options.tolerance_deg, options.shift_deg)};
 }
 
 Result<int> run_unreverse(const UnreverseOptions& options, bool json) {
   GRAVURE_TRY(const ToolPath path, load_path(options));
   GRAVURE_TRY(const motion::SmoothPath smoothed, smooth(options, path));
   formats::ToolPathSummary tool;
-  if (!options.surface.empty()) {
+  if (options.around.any()) {
     tool.clearance_mm = smoothed.clearance_mm;
     tool.turned_blocks = smoothed.turned_samples;
     tool.largest_turn_deg = smoothed.largest_turn_deg;
   }
   if (!options.rewritten.empty()) {
-    GRAVURE_CHECK(refuse_overwrite(options.rewritten, {options.program, options.surface}));
+    GRAVURE_CHECK(refuse_overwrite(options.rewritten, {options.program, options.around.surface, options.around.blade}));
     GRAVURE_TRY(tool.rewritten, rewrite(options, path, smoothed));
     GRAVURE_CHECK(write_file(options.rewritten, tool.rewritten->program));
   }
-  const std::vector<formats::UnreversedAxis> axes{{"a", options.tolerance_deg, smoothed.a},
-                                                  {"c", options.tolerance_deg, smoothed.c}};
+  const std::vector<formats::UnreversedAxis> axes{axis_of(options, "a", smoothed.a, path.a_deg),
+                                                  axis_of(options, "c", smoothed.c, path.c_deg)};
   const std::vector<formats::Curve> curves{{"a degrees", path.block, smoothed.a.angle},
-                                           {"c degrees", path.block, smoothed.c.angle}};
-  const std::string csv = options.output.csv.empty() ? "" : path_csv(path, smoothed);
+                                           {"a degrees, published shift", path.block, axes[0].shifted.angle},
+                                           {"c degrees", path.block, smoothed.c.angle},
+                                           {"c degrees, published shift", path.block, axes[1].shifted.angle}};
+  const std::string csv = options.output.csv.empty() ? "" : path_csv(path, smoothed, axes);
   GRAVURE_CHECK(write_outputs(options.output, csv, "Rotary axes without unintended reversals", "block", curves));
   print(json ? formats::unreversed_to_json(axes, tool) : unreversed_text(axes, tool));
   return kDone;
@@ -219,38 +232,24 @@ void add_tool_options(CLI::App& verb, UnreverseOptions& options) {
   verb.add_flag("--machine-frame", options.machine_frame,
                 "X Y Z are the machine's axes (else the tool's tip on the workpiece)");
   verb.add_option("--ball-radius-mm", options.ball_radius_mm, "Hold the centre of a ball end (0: the tip or focus)")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_from(0, 1e6))
       ->capture_default_str();
   verb.add_option("--rotary-centre-mm", options.rotary_centre_mm, "x,y,z where A and C cross, on the workpiece (0,0,0)")
+      ->check(number_from(-1e6, 1e6))
       ->delimiter(',')
       ->expected(3);
   verb.add_flag("--choose-branches", options.choose_branches,
                 "Choose the branch and turns of A and C anew, the cheapest over the whole path");
   verb.add_option("--a-limits-deg", options.a_limits_deg, "least,most A for --choose-branches")
+      ->check(number_from(-1e6, 1e6))
       ->delimiter(',')
       ->expected(2)
       ->needs("--choose-branches");
   verb.add_option("--c-limits-deg", options.c_limits_deg, "least,most C for --choose-branches")
+      ->check(number_from(-1e6, 1e6))
       ->delimiter(',')
       ->expected(2)
       ->needs("--choose-branches");
-}
-
-void add_surface_options(CLI::App& verb, UnreverseOptions& options) {
-  auto* surface = verb.add_option("--surface", options.surface,
-                                  "CSV of points x,y,z in mm on the workpiece that the tool must stay clear of");
-  verb.add_option("--tool-radius-mm", options.shape.radius_mm, "Radius of the tool (or beam) at its tip")
-      ->needs(surface);
-  verb.add_option("--tool-widening", options.shape.widening, "Radius gained per mm of height: a cone")->needs(surface);
-  verb.add_option("--tool-length-mm", options.shape.length_mm, "Length of the tool that is tested")->needs(surface);
-  verb.add_option("--clear-from-mm", options.shape.clear_from_mm, "Below this height contact is wanted")
-      ->needs(surface);
-  verb.add_option("--margin-mm", options.margin_mm, "Added to the radius: half the spacing of the points")
-      ->needs(surface);
-  verb.add_option("--c-step-deg", options.c_step_deg, "C is turned by this until the tool is free")
-      ->capture_default_str();
-  verb.add_option("--c-most-deg", options.c_most_deg, "and by no more than this")->capture_default_str();
-  surface->needs("--tool-length-mm");
 }
 
 }  // namespace
@@ -261,14 +260,22 @@ void add_motion_unreverse(CLI::App& motion, Command& command) {
   const auto options = std::make_shared<UnreverseOptions>();
   verb->add_option("PROGRAM", options->program, "G-code with A and C words in degrees")->required();
   verb->add_option("--tolerance-deg", options->tolerance_deg,
-                   "Reversals up to this go; no block moves by more, but for turns clear of --surface")
+                   "Reversals up to this go; no block moves by more, but for turns clear of --surface or --blade")
+      ->check(number_from(1e-9, 1e6))
       ->required();
-  verb->add_option("--control-points", options->control_points, "Of each piece to begin with")->capture_default_str();
+  verb->add_option("--control-points", options->control_points, "Of each piece to begin with")
+      ->check(integer_from(8, 1'000'000))
+      ->capture_default_str();
+  verb->add_option("--shift-deg", options->shift_deg, "Of the published rule, which is shown for comparison")
+      ->check(number_from(1e-6, 360))
+      ->capture_default_str();
   add_tool_options(*verb, *options);
-  add_surface_options(*verb, *options);
+  add_surrounding_options(*verb, options->around);
   add_output_options(*verb, options->output);
-  verb->callback(
-      [&command, options] { command.run = [&command, options] { return run_unreverse(*options, command.json); }; });
+  verb->callback([&command, verb, options] {
+    check_surrounding_options(*verb, options->around);
+    command.run = [&command, options] { return run_unreverse(*options, command.json); };
+  });
 }
 
 }  // namespace gravure::cli

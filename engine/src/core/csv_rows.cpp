@@ -75,7 +75,7 @@ Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
     if (taken == columns.count) {
       row({values.data(), taken});
       ++rows;
-    } else if (!heading_allowed) {
+    } else if (!heading_allowed || taken > 0) {
       return Error{ErrorCode::bad_file, std::string(columns.subject) + ": line " + std::to_string(number) + ": \"" +
                                             shown(line) + "\": must be " + std::string(columns.meaning)};
     }

@@ -20,6 +20,9 @@ Result<std::vector<Vector3>> parse_points_csv(std::string_view text) {
       read_csv_rows(text, {"points", "x, y and z in mm, three numbers", 3}, [&points](std::span<const double> row) {
         points.push_back({row[0], row[1], row[2]});
       }));
+  if (points.empty()) {
+    return Error{ErrorCode::bad_file, "points: there is none; give one a line, x, y and z in mm"};
+  }
   return points;
 }
 

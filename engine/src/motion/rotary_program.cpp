@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "gravure/motion/unreverse.hpp"
@@ -33,16 +34,28 @@ struct Modal {
   }
 };
 
-/// Takes the words of one line; true where A or C moved.
-bool take_line(const std::vector<Word>& words, Modal& modal) noexcept {
-  bool rotary = false;
+/// LinuxCNC's codes that choose between the tip and the machine's axes.
+bool switches_frame(const std::vector<Word>& words) noexcept {
+  return std::any_of(words.begin(), words.end(),
+                     [](const Word& word) { return word.letter == 'M' && word.value >= 428 && word.value <= 430; });
+}
+
+struct Moved {
+  bool rotary = false;  ///< A or C
+  bool linear = false;  ///< X, Y or Z
+};
+
+/// Takes the words of one line.
+Moved take_line(const std::vector<Word>& words, Modal& modal) noexcept {
+  Moved moved;
   for (const Word& word : words) {
     if (double* axis = modal.word(word.letter)) {
       *axis = word.value;
-      rotary = rotary || word.letter == 'A' || word.letter == 'C';
+      const bool rotary = word.letter == 'A' || word.letter == 'C';
+      (rotary ? moved.rotary : moved.linear) = true;
     }
   }
-  return rotary;
+  return moved;
 }
 
 }  // namespace
@@ -50,17 +63,31 @@ bool take_line(const std::vector<Word>& words, Modal& modal) noexcept {
 Result<RotaryPath> parse_rotary_program(std::string_view text) {
   RotaryPath path;
   Modal modal;
+  bool any_move = false;
+  std::size_t switched_line = 0;
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
-    GRAVURE_TRY(const auto words, words_of(text.substr(0, end), number));
+    const std::string_view line = text.substr(0, end);
+    GRAVURE_TRY(const auto words, words_of(line, number));
+    GRAVURE_CHECK(check_plain(line, number, words, any_move));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (take_line(words, modal)) {
+    const Moved moved = take_line(words, modal);
+    if (switched_line > 0 && (moved.rotary || moved.linear)) {
+      return Error{ErrorCode::bad_file, fmt::format("rotary program: line {}: moves in another frame than the moves "
+                                                    "before line {}, which switches it; split the program there",
+                                                    number, switched_line)};
+    }
+    any_move = any_move || moved.rotary || moved.linear;
+    switched_line = any_move && switches_frame(words) ? number : switched_line;
+    if (moved.rotary) {
       path.a_deg.push_back(modal.a);
       path.c_deg.push_back(modal.c);
       path.line.push_back(number);
       path.xyz_mm.push_back(modal.xyz);
+    } else if (moved.linear && !path.line.empty()) {
+      path.linear.push_back({path.line.size() - 1, number, modal.xyz});
     }
-    if (path.line.size() > kMaxBlocks) {
+    if (path.line.size() + path.linear.size() > kMaxBlocks) {
       return Error{ErrorCode::bad_file, fmt::format("rotary program: more than {} blocks", kMaxBlocks)};
     }
   }

@@ -58,32 +58,6 @@ std::string decimal(double value) {
   return text == "-0" ? "0" : text;
 }
 
-/// Codes that leave a line what it looks like: a straight, absolute move in mm. Offsets may be chosen before the first
-/// turn only.
-bool plain_code(double code, bool turned) noexcept {
-  static constexpr std::array<double, 19> kPlain{0,  1,    4,  17, 18, 19, 21, 40, 43, 49,
-                                                 61, 61.1, 64, 80, 90, 93, 94, 97, 98};
-  const bool offset = code >= 54 && code < 60;
-  return std::find(kPlain.begin(), kPlain.end(), code) != kPlain.end() || (offset && !turned);
-}
-
-/// The first thing on a line that is no plain move; empty if there is none.
-std::string_view foreign(std::string_view line, const std::vector<Word>& words, bool turned) noexcept {
-  const std::size_t formula = line.find_first_of("#<[");
-  if (formula < line.find_first_of("(;")) {
-    return line.substr(formula, 1);
-  }
-  for (const Word& word : words) {
-    const bool axis = kLetters.find(word.letter) != std::string_view::npos;
-    const bool again = axis && std::count_if(words.begin(), words.end(),
-                                             [&word](const Word& other) { return other.letter == word.letter; }) > 1;
-    if (again || word.letter == 'O' || (word.letter == 'G' && !plain_code(word.value, turned))) {
-      return line.substr(word.begin, word.end - word.begin);
-    }
-  }
-  return {};
-}
-
 class Rewriter {
  public:
   explicit Rewriter(const RewriteRequest& request) noexcept : r_(request) {}
@@ -104,11 +78,6 @@ class Rewriter {
  private:
   Result<void> take_line(std::string_view line, std::size_t number) {
     GRAVURE_TRY(const std::vector<Word> words, words_of(line, number));
-    if (const std::string_view found = foreign(line, words, block_ > 0); !found.empty()) {
-      return Error{ErrorCode::bad_file,
-                   fmt::format("rotary program: line {}: {}: only straight, absolute moves in mm can be written anew",
-                               number, found)};
-    }
     bool moves = false;
     bool turns = false;
     for (const Word& word : words) {

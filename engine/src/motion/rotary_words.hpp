@@ -20,4 +20,9 @@ struct Word {
 /// `number` where X, Y, Z, A or C has none, or one that is not finite.
 Result<std::vector<Word>> words_of(std::string_view line, std::size_t number);
 
+/// bad_file, naming the line and the word, unless the line is a straight, absolute move in mm of X, Y, Z, A and C, or
+/// does not move them: else a reader of words alone does not know where the machine stands. Work offsets may be chosen
+/// before anything has `moved` only.
+Result<void> check_plain(std::string_view line, std::size_t number, const std::vector<Word>& words, bool moved);
+
 }  // namespace gravure::motion

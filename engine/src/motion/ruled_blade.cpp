@@ -76,36 +76,55 @@ Interference find_interference(const ToolPose& tool, const ToolShape& shape, std
     const double distance = std::sqrt(dot(turned, turned)) / length;
     const double depth = shape.radius_mm + shape.widening * height + margin_mm - distance;
     if (depth > worst.depth_mm) {
-      worst = {depth > 0, depth, i, height};
+      worst = {depth > 0, depth, i, height, 0};
     }
   }
   return worst;
 }
 
-Result<Cleared> turn_clear(const ToolPose& tool, const ToolShape& shape, std::span<const Vector3> points,
+Interference find_interference(std::span<const ToolPose> places, const ToolShape& shape,
+                               std::span<const Vector3> points, double margin_mm) {
+  Interference worst;
+  worst.depth_mm = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Interference found = find_interference(places[i], shape, points, margin_mm);
+    if (found.depth_mm > worst.depth_mm) {
+      worst = found;
+      worst.place = i;
+    }
+  }
+  return worst;
+}
+
+Result<Cleared> turn_clear(std::span<const ToolPose> places, const ToolShape& shape, std::span<const Vector3> points,
                            double margin_mm, double ball_radius_mm, double c_step_rad, double c_most_rad,
                            TurnFirst first) {
+  GRAVURE_CHECK(check_range("places of the tool", static_cast<double>(places.size()), 1, 1e9));
   GRAVURE_CHECK(check_range("c_step_rad", c_step_rad, 1e-9, 7));
   GRAVURE_CHECK(check_range("c_most_rad", c_most_rad, 0, 1e4 * c_step_rad));
-  const double a = std::atan2(std::hypot(tool.axis[0], tool.axis[1]), tool.axis[2]);
-  const double c = std::atan2(tool.axis[0], tool.axis[1]);
+  const Vector3& axis = places.front().axis;
+  const double a = std::atan2(std::hypot(axis[0], axis[1]), axis[2]);
+  const double c = std::atan2(axis[0], axis[1]);
+  std::vector<ToolPose> moved(places.begin(), places.end());
   double least_depth = std::numeric_limits<double>::infinity();
   for (int step = 0; step * c_step_rad <= c_most_rad * (1 + 1e-12); ++step) {
     for (const double side : {static_cast<double>(first), -static_cast<double>(first)}) {
       const double turned = side * step * c_step_rad;
-      const ToolPose moved = step == 0 ? tool : tilted(tool, ball_radius_mm, a, c + turned);
+      for (std::size_t i = 0; i < places.size() && step > 0; ++i) {
+        moved[i] = tilted(places[i], ball_radius_mm, a, c + turned);
+      }
       const Interference found = find_interference(moved, shape, points, margin_mm);
       if (!found.touches) {
-        return Cleared{moved, c + turned, turned};
+        return Cleared{c + turned, turned};
       }
       least_depth = std::min(least_depth, found.depth_mm);
     }
   }
   return Error{
       ErrorCode::out_of_range,
-      fmt::format("interference: no turn of c up to {} rad clears the blades: {} mm too deep at best; take a slimmer "
-                  "tool or beam, or another tilt",
-                  c_most_rad, least_depth)};
+      fmt::format("interference: no turn of c up to {:.6g} degrees clears the blades: {:.6g} mm too deep at best; take "
+                  "a slimmer tool or beam, or another tilt",
+                  c_most_rad * 180 / 3.14159265358979323846, least_depth)};
 }
 
 }  // namespace gravure::motion

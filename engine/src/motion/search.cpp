@@ -126,6 +126,17 @@ void judge(const SearchProblem& problem, SearchReport& report) {
       exact.name, exact.positioning_time_s * 1e3, gain(report, exact, &Alternative::positioning_time_s),
       problem.mode_error_percent, worst.name, worst.worst_positioning_time_s * 1e3,
       gain(report, worst, &Alternative::worst_positioning_time_s), gains_of_asymmetric(report));
+  const auto worst_of = [&report](std::string_view name) {
+    const auto row = std::find_if(report.alternatives.begin(), report.alternatives.end(),
+                                  [name](const Alternative& other) { return other.name == name; });
+    return row->worst_positioning_time_s;
+  };
+  for (const char* other : {"fastest", "best_symmetric"}) {
+    if (worst_of("best_asymmetric") > worst_of(other)) {
+      report.verdict +=
+          fmt::format(" With such errors best_asymmetric is slower than {}: it is tuned to exact modes.", other);
+    }
+  }
   if (exact.name == "zv" || exact.name == "zvd" || worst.name == "zv" || worst.name == "zvd") {
     report.verdict +=
         " An input shaper wins: run it as a second stage after the fastest profile, with the same shaper on all axes "
@@ -151,6 +162,7 @@ Result<Found> find_profiles(const SearchProblem& problem, const SearchOptions& o
     symmetric_seeds.push_back(MoveSpace::point_of(space.durations_of(symmetric.best)));
     seeds.push_back(MoveSpace::point_of(space.durations_of(asymmetric.best)));
     report.evaluated += symmetric.evaluated + asymmetric.evaluated;
+    report.grids = SearchedGrids{symmetric, asymmetric};
   }
   Found found;
   const MovePoint symmetric = search_global(space, problem, options, SearchFor::symmetric, symmetric_seeds);

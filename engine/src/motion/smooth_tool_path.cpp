@@ -31,9 +31,9 @@ class Smoother {
     return Error{
         ErrorCode::out_of_range,
         fmt::format(
-            "smooth_tool_path: sample {}: still {} mm too deep after {} rounds of turning C and smoothing; take "
-            "a slimmer tool or beam, or a smaller tolerance",
-            touching_ + 1, depth_mm_, kMostRounds)};
+            "{}: still {} mm too deep after {} rounds of turning C and smoothing; take a slimmer tool or beam, or a "
+            "smaller tolerance",
+            touching_, depth_mm_, kMostRounds)};
   }
 
  private:
@@ -49,30 +49,51 @@ class Smoother {
     }
   }
 
+  /// Place 0 is the sample itself, the others are its stops.
+  std::string name_of(std::size_t sample, std::size_t place, std::size_t next_stop) const {
+    const std::size_t line = place > 0 ? r_.stops[next_stop - places_.size() + place].line : 0;
+    if (line > 0) {
+      return fmt::format("line {}", line);
+    }
+    return r_.line_of_sample.empty() ? fmt::format("sample {}", sample + 1)
+                                     : fmt::format("line {}", r_.line_of_sample[sample]);
+  }
+
+  /// The tool at a sample and at its stops.
+  void take_places(std::size_t sample, std::size_t& next_stop) {
+    places_.assign(1, result_.tools[sample]);
+    for (; next_stop < r_.stops.size() && r_.stops[next_stop].sample == sample; ++next_stop) {
+      places_.push_back(tilted({r_.stops[next_stop].centre_mm, r_.path[sample].axis}, r_.ball_radius_mm,
+                               result_.a.angle[sample] * kDegree, result_.c.angle[sample] * kDegree));
+    }
+  }
+
   /// True where nothing touched; otherwise the C of what touched is turned.
   Result<bool> turn_what_touches() {
     const Surroundings& around = r_.around;
     result_.clearance_mm = std::numeric_limits<double>::infinity();
     bool clear = true;
     TurnFirst first = TurnFirst::up;
+    std::size_t next_stop = 0;
     for (std::size_t k = 0; k < r_.path.size() && !around.points.empty(); ++k) {
-      const Interference found = find_interference(result_.tools[k], around.shape, around.points, around.margin_mm);
+      take_places(k, next_stop);
+      const Interference found = find_interference(places_, around.shape, around.points, around.margin_mm);
       result_.clearance_mm = std::min(result_.clearance_mm, -found.depth_mm);
       if (!found.touches) {
         continue;
       }
-      const auto cleared = turn_clear(result_.tools[k], around.shape, around.points, around.margin_mm,
-                                      r_.ball_radius_mm, around.c_step_rad, around.c_most_rad, first);
+      touching_ = name_of(k, found.place, next_stop);
+      depth_mm_ = found.depth_mm;
+      const auto cleared = turn_clear(places_, around.shape, around.points, around.margin_mm, r_.ball_radius_mm,
+                                      around.c_step_rad, around.c_most_rad, first);
       if (!cleared) {
-        return Error{cleared.error().code, fmt::format("sample {}: {}", k + 1, cleared.error().message)};
+        return Error{cleared.error().code, touching_ + ": " + cleared.error().message};
       }
       const double turned = cleared.value().turned_rad / kDegree;
       first = turned > 0 ? TurnFirst::up : TurnFirst::down;  // neighbours the same way
       wanted_[k] = result_.c.angle[k] + turned;
       turned_[k] = wanted_[k] - r_.c_deg[k];
       clear = false;
-      touching_ = k;
-      depth_mm_ = found.depth_mm;
     }
     return clear;
   }
@@ -94,10 +115,11 @@ class Smoother {
   }
 
   const SmoothPathRequest& r_;
-  std::vector<double> wanted_;  ///< C, with what was turned out of the way
-  std::vector<double> turned_;  ///< by how much
+  std::vector<double> wanted_;    ///< C, with what was turned out of the way
+  std::vector<double> turned_;    ///< by how much
+  std::vector<ToolPose> places_;  ///< of the sample that is being tested
   SmoothPath result_;
-  std::size_t touching_ = 0;
+  std::string touching_;  ///< what touched last
   double depth_mm_ = 0;
 };
 
@@ -109,6 +131,15 @@ Result<SmoothPath> smooth_tool_path(const SmoothPathRequest& r) {
                  fmt::format("smooth_tool_path: {} poses, {} angles of A and {} of C: one of each for every sample is "
                              "needed",
                              r.path.size(), r.a_deg.size(), r.c_deg.size())};
+  }
+  const auto by_sample = [](const HeldStop& a, const HeldStop& b) { return a.sample < b.sample; };
+  if (!std::is_sorted(r.stops.begin(), r.stops.end(), by_sample) ||
+      (!r.stops.empty() && r.stops.back().sample >= r.path.size()) ||
+      (!r.line_of_sample.empty() && r.line_of_sample.size() != r.path.size())) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("smooth_tool_path: stops must be in the order of their {} samples, and lines as many as "
+                             "samples",
+                             r.path.size())};
   }
   return Smoother(r).run();
 }

@@ -50,6 +50,23 @@ Result<MonotoneFit> fit_piece(const Piece& piece, std::size_t control_points, do
   }
 }
 
+struct Deviation {
+  double largest = 0;
+  double rms = 0;
+};
+
+Deviation deviation_of(std::span<const double> angle, std::span<const double> wanted) noexcept {
+  Deviation deviation;
+  double squares = 0;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const double off = std::abs(angle[k] - wanted[k]);
+    squares += off * off;
+    deviation.largest = std::max(deviation.largest, off);
+  }
+  deviation.rms = wanted.empty() ? 0 : std::sqrt(squares / static_cast<double>(wanted.size()));
+  return deviation;
+}
+
 }  // namespace
 
 std::size_t count_reversals(std::span<const double> angle) noexcept {
@@ -143,13 +160,9 @@ Result<Unreversed> remove_reversals(const UnreverseRequest& request) {
                                : std::clamp(result.angle[k], std::min(before, target), before);
     }
   }
-  double squares = 0;
-  for (std::size_t k = 0; k < request.angle.size(); ++k) {
-    const double off = std::abs(result.angle[k] - request.angle[k]);
-    squares += off * off;
-    result.largest_deviation = std::max(result.largest_deviation, off);
-  }
-  result.rms_deviation = std::sqrt(squares / static_cast<double>(request.angle.size()));
+  const Deviation off = deviation_of(result.angle, request.angle);
+  result.largest_deviation = off.largest;
+  result.rms_deviation = off.rms;
   result.reversals_after = count_reversals(result.angle);
   return result;
 }
@@ -165,6 +178,24 @@ std::vector<double> published_shift(std::span<const double> angle, double shift,
     shifted[k] = shifted[k - 1] + step;
   }
   return shifted;
+}
+
+Shifted published_shift_between_turns(std::span<const double> angle, double prominence, double shift) {
+  Shifted result;
+  const std::vector<std::size_t> turns = intended_turns(angle, prominence);
+  for (std::size_t t = 0; t + 1 < turns.size(); ++t) {
+    const auto piece = angle.subspan(turns[t], turns[t + 1] - turns[t] + 1);
+    std::vector<double> shifted = published_shift(piece, shift, piece.back() < piece.front() ? -1 : 1);
+    const double drift = result.angle.empty() ? 0 : result.angle.back() - shifted.front();
+    for (std::size_t k = result.angle.empty() ? 0 : 1; k < shifted.size(); ++k) {
+      result.angle.push_back(shifted[k] + drift);
+    }
+  }
+  result.reversals_after = count_reversals(result.angle);
+  const Deviation off = deviation_of(result.angle, angle);
+  result.largest_deviation = off.largest;
+  result.rms_deviation = off.rms;
+  return result;
 }
 
 }  // namespace gravure::motion

@@ -39,29 +39,45 @@ Json json_of(const motion::Alternative& row) {
   return json;
 }
 
+Json json_of(const motion::GridSearch& grid) {
+  return {{"evaluated", grid.evaluated}, {"best", json_of(grid.best)}};
+}
+
 Json json_of(const motion::Mode& mode) {
   return {{"f_hz", mode.f_hz}, {"zeta", mode.zeta}, {"participation", mode.participation}};
+}
+
+Json json_of(const motion::Profile& profile) {
+  return {{"stroke_mm", profile.stroke_mm},
+          {"access_time_s", profile.access_time_s()},
+          {"times_s", profile.times_s},
+          {"velocity_constants", profile.velocity_mm_s},
+          {"position_constants", profile.position_mm},
+          {"acceleration_constants", profile.acceleration_mm_s2},
+          {"jerk_constants", profile.jerk_mm_s3},
+          {"end_velocity_mm_s", profile.end_velocity_mm_s},
+          {"peak_velocity_mm_s", profile.peak_velocity_mm_s},
+          {"peak_acceleration_up_mm_s2", profile.peak_acceleration_up_mm_s2},
+          {"peak_acceleration_down_mm_s2", profile.peak_acceleration_down_mm_s2},
+          {"reduced",
+           {{"velocity", profile.reduced.velocity},
+            {"acceleration", profile.reduced.acceleration()},
+            {"acceleration_up", profile.reduced.acceleration_up},
+            {"acceleration_down", profile.reduced.acceleration_down}}}};
 }
 
 }  // namespace
 
 std::string profile_to_json(const motion::Profile& profile) {
-  return text_of({{"stroke_mm", profile.stroke_mm},
-                  {"access_time_s", profile.access_time_s()},
-                  {"times_s", profile.times_s},
-                  {"velocity_constants", profile.velocity_mm_s},
-                  {"position_constants", profile.position_mm},
-                  {"acceleration_constants", profile.acceleration_mm_s2},
-                  {"jerk_constants", profile.jerk_mm_s3},
-                  {"end_velocity_mm_s", profile.end_velocity_mm_s},
-                  {"peak_velocity_mm_s", profile.peak_velocity_mm_s},
-                  {"peak_acceleration_up_mm_s2", profile.peak_acceleration_up_mm_s2},
-                  {"peak_acceleration_down_mm_s2", profile.peak_acceleration_down_mm_s2},
-                  {"reduced",
-                   {{"velocity", profile.reduced.velocity},
-                    {"acceleration", profile.reduced.acceleration()},
-                    {"acceleration_up", profile.reduced.acceleration_up},
-                    {"acceleration_down", profile.reduced.acceleration_down}}}});
+  return text_of(json_of(profile));
+}
+
+std::string synchronised_to_json(const motion::SynchronisedMove& move) {
+  Json axes = Json::array();
+  for (const motion::Profile& profile : move.axes) {
+    axes.push_back(json_of(profile));
+  }
+  return text_of({{"access_time_s", move.access_time_s}, {"slowest_axis", move.slowest_axis}, {"axes", axes}});
 }
 
 std::string response_to_json(const Response& response) {
@@ -86,8 +102,13 @@ std::string search_to_json(const motion::SearchReport& report) {
   for (const motion::Alternative& row : report.alternatives) {
     rows.push_back(json_of(row));
   }
+  Json grids = nullptr;
+  if (report.grids) {
+    grids = {{"symmetric", json_of(report.grids->symmetric)}, {"asymmetric", json_of(report.grids->asymmetric)}};
+  }
   return text_of({{"best", json_of(report.best)},
                   {"evaluated", report.evaluated},
+                  {"grids", grids},
                   {"shortest", report.shortest},
                   {"shortest_worst", report.shortest_worst},
                   {"verdict", report.verdict},
@@ -121,7 +142,12 @@ std::string unreversed_to_json(const std::vector<UnreversedAxis>& axes, const To
                     {"control_points", axis.result.control_points},
                     {"largest_deviation_deg", axis.result.largest_deviation},
                     {"rms_deviation_deg", axis.result.rms_deviation},
-                    {"turns", axis.result.turns}});
+                    {"turns", axis.result.turns},
+                    {"published_shift",
+                     {{"shift_deg", axis.shift_deg},
+                      {"reversals_after", axis.shifted.reversals_after},
+                      {"largest_deviation_deg", axis.shifted.largest_deviation},
+                      {"rms_deviation_deg", axis.shifted.rms_deviation}}}});
   }
   Json json = {{"axes", list}};
   if (tool.clearance_mm) {

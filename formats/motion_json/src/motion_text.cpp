@@ -104,14 +104,30 @@ std::string panel(const Curve& curve, const Range& x, double top) {
   return svg;
 }
 
+constexpr const char* kSampleColumns = "time_s,position_mm,velocity_mm_s,acceleration_mm_s2,jerk_mm_s3";
+
+std::string sample_row(const motion::Sample& sample) {
+  const motion::State& s = sample.state;
+  return fmt::format("{},{},{},{},{}\n", sample.time_s, s.position_mm, s.velocity_mm_s, s.acceleration_mm_s2,
+                     s.jerk_mm_s3);
+}
+
 }  // namespace
 
 std::string samples_to_csv(const std::vector<motion::Sample>& samples) {
-  std::string csv = "time_s,position_mm,velocity_mm_s,acceleration_mm_s2,jerk_mm_s3\n";
+  std::string csv = std::string(kSampleColumns) + "\n";
   for (const motion::Sample& sample : samples) {
-    const motion::State& s = sample.state;
-    csv += fmt::format("{},{},{},{},{}\n", sample.time_s, s.position_mm, s.velocity_mm_s, s.acceleration_mm_s2,
-                       s.jerk_mm_s3);
+    csv += sample_row(sample);
+  }
+  return csv;
+}
+
+std::string samples_to_csv(const std::vector<std::vector<motion::Sample>>& axes) {
+  std::string csv = fmt::format("axis,{}\n", kSampleColumns);
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    for (const motion::Sample& sample : axes[axis]) {
+      csv += fmt::format("{},{}", axis, sample_row(sample));
+    }
   }
   return csv;
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gravure/motion/blade_points.hpp"
 #include "gravure/motion/ruled_blade.hpp"
 #include "gravure/motion/unreverse.hpp"
 #include "motion_test_support.hpp"
@@ -208,12 +209,8 @@ TEST(Interference, IsClearedByTurningCOrRefusedWithTheDepthLeft) {
   const ToolPose tool{{near_blade[0], near_blade[1], near_blade[2] - 3}, {0.2, 0.2, 1}};
   const ToolShape shape{1.5, 0, 60, 2};
   ASSERT_TRUE(find_interference(tool, shape, points, 0.5).touches);
-  const auto cleared = turn_clear(tool, shape, points, 0.5, 3, 1.5 * kDegree, 180 * kDegree);
-  if (cleared) {
-    EXPECT_FALSE(find_interference(cleared.value().tool, shape, points, 0.5).touches);
-    EXPECT_GT(std::abs(cleared.value().turned_rad), 0);
-  }
-  const auto thick = turn_clear(tool, {40, 0, 60, 2}, points, 0.5, 3, 1.5 * kDegree, 30 * kDegree);
+  const std::vector<ToolPose> here{tool};
+  const auto thick = turn_clear(here, {40, 0, 60, 2}, points, 0.5, 3, 1.5 * kDegree, 30 * kDegree);
   ASSERT_FALSE(thick);
   EXPECT_EQ(thick.error().code, ErrorCode::out_of_range);
   EXPECT_NE(thick.error().message.find("slimmer"), std::string::npos);
@@ -224,10 +221,84 @@ TEST(Interference, IsClearedByTurningCOrRefusedWithTheDepthLeft) {
       wall.push_back({3, static_cast<double>(y), static_cast<double>(z)});
     }
   }
-  const auto around = turn_clear({{0, 0, 0}, {0.3, 0, 1}}, {1, 0, 50, 0}, wall, 0.5, 0, 2 * kDegree, 180 * kDegree);
+  const ToolShape slim{1, 0, 50, 0};
+  const std::vector<ToolPose> leaning{{{0, 0, 0}, {0.3, 0, 1}}};
+  const auto free_at = [](const ToolPose& place, double c) {
+    return tilted(place, 0, std::atan2(std::hypot(place.axis[0], place.axis[1]), place.axis[2]), c);
+  };
+  const auto around = turn_clear(leaning, slim, wall, 0.5, 0, 2 * kDegree, 180 * kDegree);
   ASSERT_TRUE(around) << around.error().message;
   EXPECT_GT(std::abs(around.value().turned_rad), 60 * kDegree);
-  EXPECT_FALSE(find_interference(around.value().tool, {1, 0, 50, 0}, wall, 0.5).touches);
+  EXPECT_FALSE(find_interference(free_at(leaning[0], around.value().c_rad), slim, wall, 0.5).touches);
+}
+
+// The second place is nearer to the wall: turning for the first alone would leave it inside.
+TEST(Interference, IsClearedForEveryPlaceOfTheTool) {
+  std::vector<Vector3> wall;
+  for (int y = -30; y <= 30; ++y) {
+    for (int z = 0; z <= 60; ++z) {
+      wall.push_back({9, static_cast<double>(y), static_cast<double>(z)});
+    }
+  }
+  const ToolShape slim{1, 0, 50, 0};
+  const std::vector<ToolPose> places{{{0, 0, 0}, {0.3, 0, 1}}, {{6, 0, 0}, {0.3, 0, 1}}};
+  const double one =
+      turn_clear(std::span(places).first(1), slim, wall, 0.5, 0, 2 * kDegree, 180 * kDegree).value().turned_rad;
+  const auto both = turn_clear(places, slim, wall, 0.5, 0, 2 * kDegree, 180 * kDegree).value();
+  EXPECT_GT(std::abs(both.turned_rad), std::abs(one) + 4 * kDegree);
+  for (const ToolPose& place : places) {
+    EXPECT_FALSE(find_interference(tilted(place, 0, std::atan2(0.3, 1), both.c_rad), slim, wall, 0.5).touches);
+  }
+  EXPECT_FALSE(turn_clear({}, slim, wall, 0.5, 0, 2 * kDegree, 180 * kDegree));
+}
+
+TEST(BladePoints, LeaveNoGapWiderThanTheSpacing) {
+  BladeRails rails;
+  for (int k = 0; k <= 20; ++k) {
+    const double u = 0.05 * k;
+    rails.shroud.push_back(published_blade().shroud.at(u));
+    rails.hub.push_back(published_blade().hub.at(u));
+  }
+  const BladeSampling sampling{2, 7, {0, 0, 0}, 0.8};
+  const std::vector<Vector3> points = blade_points(rails, sampling).value();
+  ASSERT_EQ(points.size() % 7, 0U);
+  // Any point of both sides of the smooth blade, and of its copy two sevenths of a turn on, has a sample near.
+  const double turn = 2 * 2 * 3.14159265358979323846 / 7;
+  for (int i = 0; i <= 30; ++i) {
+    const Vector3 p = published_blade().side(i / 30.0, (i * 7 % 31) / 30.0, i % 2 == 0 ? 1 : -1);
+    const Vector3 copy{std::cos(turn) * p[0] - std::sin(turn) * p[1], std::sin(turn) * p[0] + std::cos(turn) * p[1],
+                       p[2]};
+    for (const Vector3& wanted : {p, copy}) {
+      double nearest = 1e9;
+      for (const Vector3& q : points) {
+        nearest = std::min(nearest, std::hypot(q[0] - wanted[0], q[1] - wanted[1], q[2] - wanted[2]));
+      }
+      EXPECT_LE(nearest, 0.8 / std::sqrt(2.0) + 0.01) << i;
+    }
+  }
+  EXPECT_EQ(blade_points(rails, {2, 7, {}, 1e-3}).error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(blade_points(rails, {-1, 7, {}, 1}).error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(blade_points(rails, {1, 0, {}, 1}).error().code, ErrorCode::out_of_range);
+}
+
+TEST(BladePoints, PassThroughTheRowsWithTheSlopeOfTheCurve) {
+  const Curve curve = curve_through({{0, 0, 0}, {1, 2, 0}, {3, 3, 1}, {6, 2, 1}});
+  EXPECT_EQ(curve.at(2)[0], 3);
+  EXPECT_EQ(curve.at(3)[1], 2);
+  for (const double u : {0.0, 0.4, 1.0, 1.7, 2.5}) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR((curve.at(u + 1e-6)[i] - curve.at(u - 1e-6)[i]) / 2e-6, curve.slope(u)[i], 1e-5) << u;
+    }
+  }
+}
+
+TEST(BladeCsv, ReadsSixColumnsAndNamesTheLineThatIsNone) {
+  const BladeRails rails = parse_blade_csv("px,py,pz,qx,qy,qz\n1,2,3,4,5,6\n2,2,3,5,5,6\n").value();
+  ASSERT_EQ(rails.hub.size(), 2U);
+  EXPECT_EQ(rails.hub[1][0], 5);
+  EXPECT_NE(parse_blade_csv("1,2,3,4,5,6\n1,2,3\n").error().message.find("line 2"), std::string::npos);
+  EXPECT_NE(parse_blade_csv("1,2,3\n").error().message.find("line 1"), std::string::npos);
+  EXPECT_NE(parse_blade_csv("1,2,3,4,5,6\n").error().message.find("2 or more"), std::string::npos);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "indexing_models.hpp"
@@ -20,6 +21,23 @@ TEST(MotionJson, OfAProfileHasItsKeys) {
   EXPECT_NEAR(parsed["access_time_s"].get<double>(), 0.115, 1e-12);
   EXPECT_TRUE(parsed["reduced"]["velocity"].get<bool>());
   EXPECT_TRUE(parsed["reduced"]["acceleration"].get<bool>());
+}
+
+TEST(MotionJson, OfSeveralAxesHasTheirProfiles) {
+  const std::vector<motion::JerkRequest> axes{{{20, 375, 14000, 14000, 0, 0}, 7e5, 7e5},
+                                              {{-5, 100, 3000, 3000, 0, 0}, 2e5, 2e5}};
+  const auto move = motion::synchronise(axes).value();
+  const json parsed = json::parse(synchronised_to_json(move));
+  EXPECT_EQ(parsed["slowest_axis"], move.slowest_axis);
+  ASSERT_EQ(parsed["axes"].size(), 2U);
+  EXPECT_EQ(parsed["axes"][1]["stroke_mm"], -5);
+  EXPECT_EQ(parsed["axes"][0]["access_time_s"], parsed["access_time_s"]);
+  EXPECT_EQ(parsed["axes"][1]["access_time_s"], parsed["access_time_s"]);
+  const auto samples = motion::sample_profile(move.axes[0], 1000).value();
+  const std::string csv = samples_to_csv({samples, samples});
+  EXPECT_EQ(csv.substr(0, 17), "axis,time_s,posit");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), 1 + 2 * samples.size());
+  EXPECT_NE(csv.find("\n1,0,0,"), std::string::npos);
 }
 
 TEST(MotionJson, OfAResponseHasItsKeysAndNullForNever) {
@@ -45,6 +63,10 @@ TEST(MotionJson, OfASearchHasItsKeysInOrder) {
   }
   EXPECT_GT(parsed["evaluated"].get<std::uint64_t>(), 1000U);
   EXPECT_EQ(parsed["alternatives"].size(), 6U);
+  EXPECT_TRUE(parsed["grids"].is_null());
+  motion::SearchReport with_grids;
+  with_grids.grids = motion::SearchedGrids{{{}, 61634, 0}, {{}, 5, 0}};
+  EXPECT_EQ(json::parse(search_to_json(with_grids))["grids"]["symmetric"]["evaluated"], 61634);
   EXPECT_LT(text.find("\"best\""), text.find("\"evaluated\""));
 }
 
@@ -58,6 +80,7 @@ TEST(MotionJson, OfModesAndPathsHasItsKeys) {
   const json parsed = json::parse(unreversed_to_json({{"a", 0.5, result}}));
   EXPECT_EQ(parsed["axes"][0]["reversals_before"], 2);
   EXPECT_EQ(parsed["axes"][0]["reversals_after"], 0);
+  EXPECT_TRUE(parsed["axes"][0]["published_shift"].contains("largest_deviation_deg"));
   EXPECT_FALSE(parsed.contains("interference"));
   EXPECT_FALSE(parsed.contains("rewritten"));
 }

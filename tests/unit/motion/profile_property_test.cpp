@@ -56,7 +56,11 @@ std::string limit_fault(const Profile& p, const Move& m, double jerk_up, double 
     if (along > m.a_up_mm_s2 * kSlack || along < -m.a_down_mm_s2 * kSlack) {
       return "acceleration beyond its limit";
     }
-    if (std::abs(s.jerk_mm_s3) > std::max(jerk_up, jerk_down) * kSlack) {
+    // Where the acceleration starts or ends either limit may hold.
+    const double up = along > 1e-9 * m.a_up_mm_s2 ? jerk_up : 0;
+    const double down = along < -1e-9 * m.a_down_mm_s2 ? jerk_down : 0;
+    const double jerk = up + down > 0 ? up + down : std::max(jerk_up, jerk_down);
+    if (std::abs(s.jerk_mm_s3) > jerk * kSlack) {
       return "jerk beyond its limit";
     }
   }

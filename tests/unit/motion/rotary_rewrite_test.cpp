@@ -146,14 +146,22 @@ TEST(RotaryRewrite, GivesBackAnyTextItReads) {
 
 TEST(RotaryRewrite, RefusesByLineWhatItCannotWriteAnew) {
   const std::vector<double> one{1};
-  for (const char* line : {"G2 X1 Y1 I1 J0", "G91", "G20", "G92 X0", "G81 Z-1 R1", "#1=5", "o<sub> call", "O100 sub",
-                           "G1 X[1+2]", "G28", "G55", "G1 X1 X2"}) {
-    const std::string program = "G1 X0 Y0 Z0 A0 C0\n" + std::string(line) + "\n";
+  for (const char* line :
+       {"G2 X1 Y1 I1 J0", "G91", "G20", "G92 X0", "G81 Z-1 R1", "#1=5", "o<sub> call", "O100 sub", "G1 X[1+2]", "G28",
+        "G55", "G1 X1 X2", "G53 X1", "G10 L2 P1 X1", "G52 X1", "G43.4 H1", "M98 P2", "G1 B10", "G1 U1"}) {
+    const std::string program = "G1 X0 Y0 Z0 A0 C0\n" + std::string(line) + "\nG90\nG1 A1\n";
+    const auto read = parse_rotary_program(program);  // also where nothing is to be written
+    ASSERT_FALSE(read) << line;
+    EXPECT_NE(read.error().message.find("line 2"), std::string::npos) << read.error().message;
     const auto refused = rewrite_rotary_program({program, one, one, ProgramFrame::workpiece, 0, {}});
     ASSERT_FALSE(refused) << line;
     EXPECT_EQ(refused.error().code, ErrorCode::bad_file);
     EXPECT_NE(refused.error().message.find("line 2"), std::string::npos) << refused.error().message;
   }
+  EXPECT_TRUE(parse_rotary_program("M428\nG1 X0 A0\nM429\nM30\n"));
+  const auto other_frame = parse_rotary_program("M428\nG1 X0 A0\nM429\nG1 X1\n");
+  ASSERT_FALSE(other_frame);
+  EXPECT_NE(other_frame.error().message.find("line 4"), std::string::npos) << other_frame.error().message;
   EXPECT_TRUE(rewrite_rotary_program({"G55\nG1 X0 Y0 Z0 A0 C0\n(G2)\n", one, one, ProgramFrame::machine, 0, {}}));
   const auto unknown = rewrite_rotary_program({"G1 X0 A0 C0\n", one, one, ProgramFrame::machine, 0, {}});
   ASSERT_FALSE(unknown);

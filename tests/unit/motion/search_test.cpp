@@ -164,6 +164,16 @@ TEST(Search, BeatsBothGridsAndTheReportIsConsistent) {
       EXPECT_GE(row.envelope_time_s, row.positioning_time_s * (1 - 1e-12)) << row.name;
       EXPECT_TRUE(row.profile.has_value());
     }
+    ASSERT_TRUE(report.grids.has_value());
+    EXPECT_EQ(report.grids->symmetric.evaluated, 61634U);
+    EXPECT_EQ(report.grids->symmetric.best.positioning_time_s, symmetric_grid);
+    EXPECT_EQ(report.grids->asymmetric.best.positioning_time_s, asymmetric_grid);
+    for (const char* other : {"fastest", "best_symmetric"}) {
+      const bool slower =
+          named(report, "best_asymmetric").worst_positioning_time_s > named(report, other).worst_positioning_time_s;
+      const std::string words = std::string("best_asymmetric is slower than ") + other;
+      EXPECT_EQ(report.verdict.find(words) != std::string::npos, slower) << other;
+    }
     EXPECT_NE(report.verdict.find(report.shortest), std::string::npos);
     const auto gains = report.verdict.find("Gain of best_asymmetric");
     ASSERT_NE(gains, std::string::npos);

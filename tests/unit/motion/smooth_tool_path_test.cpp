@@ -74,6 +74,31 @@ TEST(SmoothToolPath, TurnsCOutOfTheWayWhereTheBeamTouchesAndNowhereElse) {
   EXPECT_LE(smooth.c.largest_deviation, smooth.largest_turn_deg + 1);
 }
 
+// A block that moves X alone, half-way and towards the wall, with the angles of sample 100.
+TEST(SmoothToolPath, TurnsCForAStopThatTouchesBetweenFreeSamples) {
+  const Channel channel(0);
+  SmoothPathRequest request = channel.request();
+  const std::vector<HeldStop> stops{{100, {4, 20, 0}, 0}};
+  EXPECT_EQ(smooth_tool_path(request).value().turned_samples, 0U);
+  request.stops = stops;
+  const SmoothPath smooth = smooth_tool_path(request).value();
+  EXPECT_GE(smooth.turned_samples, 1U);
+  EXPECT_GT(smooth.rounds, 1U);
+  const ToolPose there{stops[0].centre_mm, smooth.tools[100].axis};
+  EXPECT_FALSE(find_interference(there, request.around.shape, channel.walls, request.around.margin_mm).touches);
+  const std::vector<HeldStop> inside{
+      {3, {0, 0.6, 0}}, {100, {0, 20, 0}, 70}, {100, {6, 20, 0}, 71}};  // the last in the wall itself
+  request.stops = inside;
+  std::vector<std::size_t> lines(channel.path.size(), 7);
+  request.line_of_sample = lines;
+  const auto refused = smooth_tool_path(request);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message.substr(0, 9), "line 71: ");
+  const std::vector<HeldStop> outside{{channel.path.size(), {0, 0, 0}, 0}};
+  request.stops = outside;
+  EXPECT_EQ(smooth_tool_path(request).error().code, ErrorCode::out_of_range);
+}
+
 TEST(SmoothToolPath, SaysWhichSampleCannotBeFreed) {
   const Channel channel(25);
   SmoothPathRequest request = channel.request();
@@ -91,6 +116,8 @@ TEST(PointsCsv, ReadsThreeColumnsAndNamesTheLineThatIsNone) {
   const auto points = parse_points_csv("x,y,z\n1,2,3\n# wall\n-1; 0.5\t7\n").value();
   ASSERT_EQ(points.size(), 2U);
   EXPECT_EQ(points[1][2], 7);
+  EXPECT_NE(parse_points_csv("1,2\n1,2,3\n").error().message.find("line 1"), std::string::npos);
+  EXPECT_NE(parse_points_csv("x,y,z\n").error().message.find("none"), std::string::npos);
   EXPECT_NE(parse_points_csv("1,2,3\n1,2\n").error().message.find("line 2"), std::string::npos);
 }
 

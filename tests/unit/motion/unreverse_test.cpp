@@ -237,6 +237,21 @@ TEST(PublishedShift, EndsWithoutReversalsButDrifts) {
   EXPECT_LT(anchored.largest_deviation, 0.6);
 }
 
+// There and back: each way in its own sense, the drift carried on over the turn.
+TEST(PublishedShift, BetweenIntendedTurnsKeepsTheseAlone) {
+  std::vector<double> angle;
+  for (int k = 0; k <= 400; ++k) {
+    const double s = k / 200.0;
+    angle.push_back(30 * (s < 1 ? s : 2 - s) + 1.6 * std::sin(8 * 3.14159265358979323846 * s));
+  }
+  EXPECT_GT(count_reversals(angle), 9U);
+  const Shifted shifted = published_shift_between_turns(angle, 5, 0.05);
+  EXPECT_EQ(shifted.angle.size(), angle.size());
+  EXPECT_EQ(shifted.reversals_after, 1U);
+  EXPECT_GT(shifted.largest_deviation, 2);
+  EXPECT_LE(shifted.rms_deviation, shifted.largest_deviation);
+}
+
 TEST(IntendedTurns, LeaveOutASmallDipAtEitherEnd) {
   const std::vector<double> path{0, -0.1, 2, 4, 3.9, 5, 4.9};
   EXPECT_EQ(intended_turns(path, 0.5), (std::vector<std::size_t>{0, 6}));
@@ -262,12 +277,18 @@ TEST(Unwrap, CountsTurnsAndKeepsHalfTurnsTheWayTheyWere) {
 }
 
 TEST(RotaryProgram, ReadsModalWordsAndSkipsComments) {
-  const RotaryPath path = parse_rotary_program("(A5 C5)\nG0 X1 Y2 Z3\nG1 a-10.5 C+20 ; A9\nX4\nC30\n").value();
+  const RotaryPath path = parse_rotary_program("(A5 C5)\nG0 X1 Y2 Z3\nG1 a-10.5 C+20 ; A9\nX4\nF9\nC30\nZ9\n").value();
   ASSERT_EQ(path.c_deg.size(), 2U);
   EXPECT_EQ(path.a_deg[1], -10.5);
   EXPECT_EQ(path.c_deg[0], 20);
   EXPECT_EQ(path.xyz_mm[1][0], 4);
-  EXPECT_EQ(path.line[1], 5U);
+  EXPECT_EQ(path.line[1], 6U);
+  ASSERT_EQ(path.linear.size(), 2U);  // X4 and Z9, with the angles of the block before them
+  EXPECT_EQ(path.linear[0].block, 0U);
+  EXPECT_EQ(path.linear[0].line, 4U);
+  EXPECT_EQ(path.linear[0].xyz_mm[1], 2);
+  EXPECT_EQ(path.linear[1].block, 1U);
+  EXPECT_EQ(path.linear[1].xyz_mm[2], 9);
   EXPECT_NE(parse_rotary_program("G1\nA C3\n").error().message.find("line 2"), std::string::npos);
 }
 

@@ -9,7 +9,7 @@
 
 namespace gravure {
 
-inline constexpr std::size_t kMostCsvColumns = 4;
+inline constexpr std::size_t kMostCsvColumns = 6;
 
 /// What the columns of a CSV text mean, for messages.
 struct CsvColumns {
@@ -18,9 +18,9 @@ struct CsvColumns {
   std::size_t count = 2;     ///< at most kMostCsvColumns; further ones are not read
 };
 
-/// Calls `row` with the numbers of each line, separated by comma, semicolon, tab or blanks. A first line that is not
-/// numbers is a heading; lines that start with # are comments. bad_file names the line that is anything else, and more
-/// than 10 million rows.
+/// Calls `row` with the numbers of each line, separated by comma, semicolon, tab or blanks. A first line that does not
+/// start with a number is a heading; lines that start with # are comments. bad_file names the line that is anything
+/// else, and more than 10 million rows.
 Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
                            const std::function<void(std::span<const double>)>& row);
 

@@ -15,8 +15,8 @@ struct Recording {
 };
 
 /// Two columns, time in s and acceleration in mm/s^2, separated by comma, semicolon, tab or blanks. A first line that
-/// is not numbers is a heading; lines that start with # are comments. bad_file names the line that is anything else; at
-/// most 10 million samples.
+/// does not start with a number is a heading; lines that start with # are comments. bad_file names the line that is
+/// anything else; at most 10 million samples.
 Result<Recording> parse_recording_csv(std::string_view text);
 
 enum class RecordingOf : std::uint8_t {

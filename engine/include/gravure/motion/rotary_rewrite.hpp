@@ -35,9 +35,8 @@ struct Rewritten {
 /// The program with the new angles, and X, Y and Z computed anew so that the ball's centre (or the focus) stays where
 /// it was; all other text stays as it is. A line that only moves X, Y or Z after the first turn is computed anew as
 /// well. Numbers have six decimals. The new text is read back and compared. Fails with out_of_range where the angles
-/// are not as many as the blocks or not finite, and with bad_file, naming the line, for what is not a straight,
-/// absolute move in mm (arcs, cycles, G20, G91, offsets, variables, O words) and for a machine's axis that turns before
-/// X, Y and Z are known.
+/// are not as many as the blocks or not finite, like parse_rotary_program(), and with bad_file, naming the line, for a
+/// machine's axis that turns before X, Y and Z are known.
 Result<Rewritten> rewrite_rotary_program(const RewriteRequest& request);
 
 }  // namespace gravure::motion

@@ -50,27 +50,31 @@ struct Interference {
   double depth_mm = 0;    ///< how far the deepest point lies inside; negative is the clearance
   std::size_t point = 0;  ///< the deepest (or nearest)
   double height_mm = 0;   ///< of it along the axis
+  std::size_t place = 0;  ///< of the tool, where there are several
 };
 
 /// Distance of each point from the axis against the radius there. `margin_mm` is added to the radius: half the spacing
 /// of sampled surfaces covers what lies between the points.
 Interference find_interference(const ToolPose& tool, const ToolShape& shape, std::span<const Vector3> points,
                                double margin_mm = 0);
+/// The deepest of a tool at several places.
+Interference find_interference(std::span<const ToolPose> places, const ToolShape& shape,
+                               std::span<const Vector3> points, double margin_mm = 0);
 
 /// Turning c out of the way ([C2]): what was tried.
 struct Cleared {
-  ToolPose tool;
-  double c_rad = 0;       ///< of the free pose
+  double c_rad = 0;       ///< that is free
   double turned_rad = 0;  ///< from the wanted one
 };
 
 /// Which way to turn first; both are tried at every step.
 enum class TurnFirst : std::int8_t { up = 1, down = -1 };
 
-/// The nearest free pose by increments of c to either side, up to `c_most_rad` ([C2]: 1 to 2 degrees a step), the ball
-/// (or focus) held where it is. Fails with out_of_range, naming the depth that is left, where none is free: a slimmer
-/// tool or another tilt is needed.
-Result<Cleared> turn_clear(const ToolPose& tool, const ToolShape& shape, std::span<const Vector3> points,
+/// The nearest free c by increments to either side, up to `c_most_rad` ([C2]: 1 to 2 degrees a step), the ball (or
+/// focus) held where it is. `places`, one or more, are where the tool goes with one and the same axis: all become free.
+/// Fails with out_of_range, naming the depth that is left, where no c frees them: a slimmer tool or another tilt is
+/// needed.
+Result<Cleared> turn_clear(std::span<const ToolPose> places, const ToolShape& shape, std::span<const Vector3> points,
                            double margin_mm, double ball_radius_mm, double c_step_rad, double c_most_rad,
                            TurnFirst first = TurnFirst::up);
 

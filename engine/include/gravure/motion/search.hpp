@@ -72,10 +72,17 @@ struct Alternative {
   double residual = 0;                  ///< envelope when the input ends, in the band's unit
 };
 
+/// The two complete grids that a search began with.
+struct SearchedGrids {
+  GridSearch symmetric;
+  GridSearch asymmetric;
+};
+
 struct SearchReport {
   std::vector<Alternative> alternatives;
   Candidate best;  ///< of the profiles: the asymmetric one, never worse than the symmetric one
   std::uint64_t evaluated = 0;
+  std::optional<SearchedGrids> grids;  ///< where the options asked for them; never better than the alternatives
   std::string verdict;         ///< in words: what is shortest for exact modes and under mode errors, and by how much
   std::string shortest;        ///< name of the alternative, for exact modes
   std::string shortest_worst;  ///< name of the alternative, under mode errors

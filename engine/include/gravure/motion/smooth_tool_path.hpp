@@ -18,6 +18,13 @@ struct Surroundings {
   double c_most_rad = 0.5;
 };
 
+/// Another place the tool goes to with the angles of a sample, as with a move of X, Y or Z alone.
+struct HeldStop {
+  std::size_t sample = 0;  ///< whose angles hold
+  Vector3 centre_mm{};     ///< tip (or focus)
+  std::size_t line = 0;    ///< for errors; 0: it is named by its sample
+};
+
 struct SmoothPathRequest {
   std::span<const ToolPose> path;  ///< tip (or focus) and direction, as wanted
   std::span<const double> a_deg;   ///< the axes that stand so, C unwrapped
@@ -27,6 +34,8 @@ struct SmoothPathRequest {
   std::size_t control_points = 16;
   double ball_radius_mm = 0;  ///< its centre is held; 0 holds the tip or the focus
   Surroundings around;
+  std::span<const HeldStop> stops{};              ///< tested as well; by sample
+  std::span<const std::size_t> line_of_sample{};  ///< for errors; none: samples are named by their number
 };
 
 struct SmoothPath {
@@ -41,9 +50,9 @@ struct SmoothPath {
 
 /// The loop of [C2] with bounds: reversals are removed from A and C, tool (or focus) centres are computed anew, every
 /// sample is tested against the surroundings; where one touches, C is turned by increments until it is free, and the
-/// path is smoothed again, until all samples are free.
+/// path is smoothed again, until all samples and stops are free. What lies between two samples is not tested.
 /// Fails like remove_reversals() and turn_clear(), naming the sample; with out_of_range where samples still touch after
-/// 8 rounds.
+/// 8 rounds, and where stops are not in order or their samples not there.
 Result<SmoothPath> smooth_tool_path(const SmoothPathRequest& request);
 
 }  // namespace gravure::motion

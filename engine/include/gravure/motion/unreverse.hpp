@@ -48,16 +48,37 @@ Result<Unreversed> remove_reversals(const UnreverseRequest& request);
 /// and accumulated again. It drifts; nothing bounds by how far.
 std::vector<double> published_shift(std::span<const double> angle, double shift, int direction);
 
-/// One rotary axis word of a G-code program.
+/// What the published rule makes of a whole path.
+struct Shifted {
+  std::vector<double> angle;
+  std::size_t reversals_after = 0;
+  double largest_deviation = 0;
+  double rms_deviation = 0;
+};
+
+/// The published rule between the intended turns (by `prominence`), each piece in its own sense. It goes on from where
+/// the piece before has drifted to.
+Shifted published_shift_between_turns(std::span<const double> angle, double prominence, double shift);
+
+/// The rotary axes of a G-code program, one entry for each block that moves A or C.
 struct RotaryPath {
   std::vector<double> a_deg;
   std::vector<double> c_deg;
   std::vector<std::size_t> line;  ///< of the file, from 1
   std::vector<std::array<double, 3>> xyz_mm;
+
+  /// A block that moves X, Y or Z alone: A and C stay where `block`, an index of the above, put them.
+  struct Linear {
+    std::size_t block = 0;
+    std::size_t line = 0;
+    std::array<double, 3> xyz_mm{};
+  };
+  std::vector<Linear> linear;  ///< those after the first that moves A or C
 };
 
-/// The blocks of a program that move A or C, with modal X, Y and Z. Comments in brackets or after a semicolon are left
-/// out. bad_file names a line whose word has no number; at most 10 million blocks.
+/// The blocks of a program with their modal words. Comments in brackets or after a semicolon are left out. bad_file
+/// names the line of a word without a number, and of all that is no straight, absolute move in mm (arcs, cycles, G20,
+/// G91, offsets after the first move, other axes, variables, calls); at most 10 million blocks.
 Result<RotaryPath> parse_rotary_program(std::string_view text);
 
 }  // namespace gravure::motion

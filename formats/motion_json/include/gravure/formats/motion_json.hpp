@@ -9,6 +9,7 @@
 #include "gravure/motion/rotary_rewrite.hpp"
 #include "gravure/motion/search.hpp"
 #include "gravure/motion/settling.hpp"
+#include "gravure/motion/synchronise.hpp"
 #include "gravure/motion/unreverse.hpp"
 
 namespace gravure::formats {
@@ -19,6 +20,9 @@ namespace gravure::formats {
 /// times_s[8], velocity_constants[7], position_constants[7], acceleration_constants[7], jerk_constants[7],
 /// access_time_s, stroke_mm, peak_*, reduced{velocity, acceleration, acceleration_up, acceleration_down}.
 std::string profile_to_json(const motion::Profile& profile);
+
+/// access_time_s, slowest_axis (from 0), axes[] as above.
+std::string synchronised_to_json(const motion::SynchronisedMove& move);
 
 /// What `respond` found out, of the move as planned and, where asked for, as a servo with updates makes it.
 struct Response {
@@ -34,7 +38,8 @@ struct Response {
 /// residual_at_access, band, modes.
 std::string response_to_json(const Response& response);
 
-/// best{v, a_up, a_down, s_factor, positioning_time_s}, evaluated, alternatives, shortest, shortest_worst, verdict.
+/// best{v, a_up, a_down, s_factor, positioning_time_s}, evaluated, grids{symmetric{evaluated, best}, asymmetric{}} (or
+/// null), alternatives, shortest, shortest_worst, verdict.
 std::string search_to_json(const motion::SearchReport& report);
 
 /// modes[{f_hz, f_sd_hz, zeta, zeta_sd, participation, participation_sd}], participation_is_absolute, offset, noise.
@@ -45,6 +50,8 @@ struct UnreversedAxis {
   std::string name;  ///< "a" or "c"
   double tolerance_deg = 0;
   motion::Unreversed result;
+  double shift_deg = 0;  ///< of the published rule
+  motion::Shifted shifted{};
 };
 
 /// What became of the tool and of its program.
@@ -55,13 +62,16 @@ struct ToolPathSummary {
   std::optional<motion::Rewritten> rewritten;
 };
 
-/// axes[{name, reversals_before, reversals_after, control_points, largest_deviation_deg, rms_deviation_deg, turns}];
+/// axes[{name, reversals_before, reversals_after, control_points, largest_deviation_deg, rms_deviation_deg, turns,
+/// published_shift{shift_deg, reversals_after, largest_deviation_deg, rms_deviation_deg}}];
 /// with surfaces interference{clearance_mm, turned_blocks, largest_turn_deg}; with a new program
 /// rewritten{changed_lines, largest_tilt_deg, largest_shift_mm, largest_error_mm}.
 std::string unreversed_to_json(const std::vector<UnreversedAxis>& axes, const ToolPathSummary& tool = {});
 
 /// CSV of samples: "time_s,position_mm,velocity_mm_s,acceleration_mm_s2,jerk_mm_s3".
 std::string samples_to_csv(const std::vector<motion::Sample>& samples);
+/// The same of several axes, one after another, with the axis (from 0) as the first column.
+std::string samples_to_csv(const std::vector<std::vector<motion::Sample>>& axes);
 
 /// One curve of a plot.
 struct Curve {
