@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "gravure/motion/search.hpp"
@@ -67,6 +68,10 @@ Result<void> write_response(const RespondOptions& options, const std::vector<mot
   return write_outputs(options.output, csv, "Residual vibration", "ms", curves);
 }
 
+std::string milliseconds(double time_s) {
+  return std::isfinite(time_s) ? fmt::format("{:.6f} ms", time_s * 1e3) : "never";
+}
+
 Result<int> run_respond(const RespondOptions& options, bool json) {
   GRAVURE_TRY(const std::vector<motion::Mode> modes, modes_of(options.modes));
   GRAVURE_TRY(const motion::Band band, band_of(options.modes));
@@ -79,10 +84,9 @@ Result<int> run_respond(const RespondOptions& options, bool json) {
     GRAVURE_CHECK(write_response(options, modes, input, response));
   }
   print(json ? formats::response_to_json(response)
-             : fmt::format("access time       {:.6f} ms\npositioning time  {:.6f} ms\nresidual after    {:.6f} ms\n"
-                           "envelope settles  {:.6f} ms\n",
-                           settling.access_time_s * 1e3, settling.positioning_time_s * 1e3,
-                           settling.residual_after_s() * 1e3, settling.envelope_time_s * 1e3));
+             : fmt::format("access time       {}\npositioning time  {}\nresidual after    {}\nenvelope settles  {}\n",
+                           milliseconds(settling.access_time_s), milliseconds(settling.positioning_time_s),
+                           milliseconds(settling.residual_after_s()), milliseconds(settling.envelope_time_s)));
   return kDone;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "gravure/core/file_output.hpp"
+#include "verb.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -19,6 +20,10 @@ double number_of(const std::string& text) {
   const auto [end, error] = std::from_chars(from, to, value);
   return error == std::errc{} && end == to ? value : std::numeric_limits<double>::quiet_NaN();
 }
+
+/// The two modes and the band of the published indexing table [C1], fitted to its positioning times.
+constexpr motion::FrequencyAndDamping kIndexingTable[] = {{36.206, 0.2249}, {86.748, 0.0331}};
+constexpr double kIndexingBand_mm_s2 = 840;
 
 motion::Move move_of(const MoveOptions& options) {
   return {options.stroke_mm,      options.v_max,       options.a_up, options.a_down.value_or(options.a_up),
@@ -86,8 +91,8 @@ Result<motion::Profile> plan_move(const MoveOptions& options) {
 }
 
 void add_mode_options(CLI::App& verb, ModeOptions& options) {
-  verb.add_option("--mode", options.modes, "f_hz,zeta[,participation]; once for each mode")
-      ->required()
+  verb.add_option("--mode", options.modes,
+                  "f_hz,zeta[,participation]; once for each mode (the two of the published indexing table)")
       ->allow_extra_args(false);
   auto* acceleration =
       add_number(verb, "--band-mm-s2", options.band_mm_s2, "Done when the acceleration stays within this");
@@ -95,6 +100,12 @@ void add_mode_options(CLI::App& verb, ModeOptions& options) {
 }
 
 Result<std::vector<motion::Mode>> modes_of(const ModeOptions& options) {
+  if (options.modes.empty()) {
+    warn(
+        "no --mode: the two of the published indexing table are taken, 36.206 and 86.748 Hz; `gravure motion identify` "
+        "finds those of a machine");
+    return motion::chain_modes(kIndexingTable);
+  }
   std::vector<motion::Mode> modes;
   std::vector<motion::FrequencyAndDamping> chain;
   for (const std::string& text : options.modes) {
@@ -126,6 +137,9 @@ Result<motion::Band> band_of(const ModeOptions& options) {
   if (options.band_mm_s2) {
     return motion::Band{motion::BandOf::acceleration, *options.band_mm_s2};
   }
+  if (options.modes.empty()) {
+    return motion::Band{motion::BandOf::acceleration, kIndexingBand_mm_s2};
+  }
   return Error{ErrorCode::bad_argument, "one of --band-mm-s2 and --band-mm is needed: it says when the move is done"};
 }
 
@@ -135,13 +149,18 @@ void add_output_options(CLI::App& verb, OutputOptions& options) {
   verb.add_option("--plot-title", options.plot_title, "Title of the figure");
 }
 
+Result<void> write_whole(const std::string& path, std::string_view content) {
+  cancel_token();  // somebody "looks at it": Ctrl-C leaves no temporary file behind
+  return write_file(path, content);
+}
+
 Result<void> write_outputs(const OutputOptions& options, const std::string& csv, const std::string& title,
                            const std::string& x_name, const std::vector<formats::Curve>& curves) {
   if (!options.csv.empty()) {
-    GRAVURE_CHECK(write_file(options.csv, csv));
+    GRAVURE_CHECK(write_whole(options.csv, csv));
   }
   if (!options.plot.empty()) {
-    GRAVURE_CHECK(write_file(
+    GRAVURE_CHECK(write_whole(
         options.plot, formats::curves_to_svg(options.plot_title.empty() ? title : options.plot_title, x_name, curves)));
   }
   return {};

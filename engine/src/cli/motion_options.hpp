@@ -52,7 +52,8 @@ struct ModeOptions {
 };
 
 void add_mode_options(CLI::App& verb, ModeOptions& options);
-/// Shares of the last mass of a chain where no mode has one; bad_argument where only some do.
+/// Shares of the last mass of a chain where no mode has one; bad_argument where only some do. Without any mode, two by
+/// default: the published indexing table, with a warning, and its band of 840 mm/s^2.
 Result<std::vector<motion::Mode>> modes_of(const ModeOptions& options);
 Result<motion::Band> band_of(const ModeOptions& options);
 
@@ -67,6 +68,8 @@ struct OutputOptions {
 std::vector<formats::Curve> profile_curves(const motion::Profile& profile);
 
 void add_output_options(CLI::App& verb, OutputOptions& options);
+/// Writes a file, whole or not at all, also under Ctrl-C.
+Result<void> write_whole(const std::string& path, std::string_view content);
 /// Writes what was asked for.
 Result<void> write_outputs(const OutputOptions& options, const std::string& csv, const std::string& title,
                            const std::string& x_name, const std::vector<formats::Curve>& curves);
