@@ -14,6 +14,7 @@ namespace gravure::motion {
 namespace {
 
 constexpr double kMostPoints = 5e6;
+constexpr double kMostCoordinate_mm = 1e6;
 constexpr double kTwoPi = 6.28318530717958647692;
 
 /// The span of a Catmull-Rom curve that holds a parameter; the ends are continued straight.
@@ -71,8 +72,15 @@ Error too_many(const BladeSampling& sampling) {
                            sampling.spacing_mm, sampling.blades, kMostPoints)};
 }
 
+/// More samples in a row where neighbours are too far apart.
+double finer(double count, double gap_mm, double spacing_mm) noexcept {
+  return gap_mm > spacing_mm ? std::max(count + 1, 1 + std::ceil((count - 1) * gap_mm / spacing_mm)) : count;
+}
+
 /// One blade, ever finer until no gap is wider than the spacing.
-Result<std::vector<Vector3>> one_blade(const RuledBlade& blade, double last, const BladeSampling& sampling) {
+Result<std::vector<Vector3>> one_blade(const BladeRails& rails, const BladeSampling& sampling) {
+  const RuledBlade blade{curve_through(rails.shroud), curve_through(rails.hub), sampling.thickness_mm};
+  const auto last = static_cast<double>(rails.shroud.size() - 1);
   double along = 2;
   double across = 2;
   while (2 * along * across * static_cast<double>(sampling.blades) <= kMostPoints) {
@@ -82,9 +90,8 @@ Result<std::vector<Vector3>> one_blade(const RuledBlade& blade, double last, con
     if (along_mm <= sampling.spacing_mm && across_mm <= sampling.spacing_mm) {
       return points;
     }
-    // Gaps shrink as the intervals grow in number.
-    along = 1 + std::ceil((along - 1) * std::max(1.0, along_mm / sampling.spacing_mm));
-    across = 1 + std::ceil((across - 1) * std::max(1.0, across_mm / sampling.spacing_mm));
+    along = finer(along, along_mm, sampling.spacing_mm);
+    across = finer(across, across_mm, sampling.spacing_mm);
   }
   return too_many(sampling);
 }
@@ -127,8 +134,13 @@ Result<std::vector<Vector3>> blade_points(const BladeRails& rails, const BladeSa
   GRAVURE_CHECK(check_range("blade thickness_mm", sampling.thickness_mm, 0, 1e4));
   GRAVURE_CHECK(check_range("blades", static_cast<double>(sampling.blades), 1, 1000));
   GRAVURE_CHECK(check_range("blade spacing_mm", sampling.spacing_mm, 1e-3, 1e4));
-  const RuledBlade blade{curve_through(rails.shroud), curve_through(rails.hub), sampling.thickness_mm};
-  GRAVURE_TRY(std::vector<Vector3> points, one_blade(blade, static_cast<double>(rails.shroud.size() - 1), sampling));
+  for (const std::vector<Vector3>* rail : {&rails.shroud, &rails.hub}) {
+    for (const Vector3& point : *rail) {
+      const double furthest = std::max({std::abs(point[0]), std::abs(point[1]), std::abs(point[2])});
+      GRAVURE_CHECK(check_range("blade coordinate in mm", furthest, 0, kMostCoordinate_mm));
+    }
+  }
+  GRAVURE_TRY(std::vector<Vector3> points, one_blade(rails, sampling));
   const std::size_t of_one = points.size();
   points.reserve(of_one * sampling.blades);
   const Vector3& centre = sampling.centre_mm;

@@ -279,6 +279,8 @@ TEST(BladePoints, LeaveNoGapWiderThanTheSpacing) {
   EXPECT_EQ(blade_points(rails, {2, 7, {}, 1e-3}).error().code, ErrorCode::out_of_range);
   EXPECT_EQ(blade_points(rails, {-1, 7, {}, 1}).error().code, ErrorCode::out_of_range);
   EXPECT_EQ(blade_points(rails, {1, 0, {}, 1}).error().code, ErrorCode::out_of_range);
+  rails.hub[3][1] = -1e300;
+  EXPECT_EQ(blade_points(rails, {1, 1, {}, 1}).error().code, ErrorCode::out_of_range);
 }
 
 TEST(BladePoints, PassThroughTheRowsWithTheSlopeOfTheCurve) {

@@ -30,7 +30,8 @@ struct BladeSampling {
 };
 
 /// Both sides of every blade ([C2] eqs 1 to 3). A point of the sides lies within spacing / sqrt(2) of a sample.
-/// Fails with out_of_range for values outside their ranges and where more than 5 million points would be needed.
+/// Fails with out_of_range for values outside their ranges, coordinates beyond 1e6 mm, and where more than 5 million
+/// points would be needed.
 Result<std::vector<Vector3>> blade_points(const BladeRails& rails, const BladeSampling& sampling);
 
 }  // namespace gravure::motion
