@@ -114,6 +114,21 @@ void warn_of_absent_limits(const ScanHead& head, std::vector<std::string>& warni
   warn("max_jerk_mm_s3", head.max_jerk_mm_s3);
 }
 
+/// Joints run at constant speed while lines are marked.
+Result<void> check_joint_speeds(const LineTiming& timing, const LineGeometry& geometry) {
+  for (std::size_t i = 0; i < geometry.per_slot.size(); ++i) {
+    const kinematics::Joint& joint = geometry.machine.joints[i];
+    const double speed = std::abs(geometry.per_slot[i]) / timing.slot_s();
+    if (joint.limits.max_speed && speed > *joint.limits.max_speed) {
+      return Error{ErrorCode::out_of_range,
+                   fmt::format("scan: joint {} moves at {} {}: its max_speed is {}; take fewer lines a second",
+                               joint.name, speed, joint.kind == kinematics::JointKind::prismatic ? "mm/s" : "rad/s",
+                               *joint.limits.max_speed)};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<LineTrajectory> make_line_trajectory(const LineTiming& timing, const LineGeometry& geometry,
@@ -127,6 +142,7 @@ Result<LineTrajectory> make_line_trajectory(const LineTiming& timing, const Line
                              "{} joints",
                              geometry.at_centre.size(), geometry.per_slot.size(), geometry.machine.joints.size())};
   }
+  GRAVURE_CHECK(check_joint_speeds(timing, geometry));
   const ScanHead& head = geometry.machine.head;
   Lag lag;
   if (options.lag_compensation) {

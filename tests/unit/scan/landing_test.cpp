@@ -191,6 +191,18 @@ TEST(Landing, HelicalCarriageIsTakenUpByU) {
   EXPECT_NEAR(last - first, 0.008 * 3499 - 0.05 * 3499 / 5400, 1e-9);
 }
 
+TEST(Landing, AWorkpieceThickerByTenMicrometresHasAWiderPitchAndAClosedSeam) {
+  const LineGeometry geometry = roller_geometry();
+  const double per_line = geometry.per_slot[0] * 5400;
+  const auto marked = [&geometry, per_line](int line) {  // the surface is 5 um nearer to the head
+    return kinematics::forward(geometry.machine, kinematics::JointPositions{per_line * line, 0, 0}, {0, 0, 0.005})
+        .position_mm;
+  };
+  const double pitch_um = (marked(1) - marked(0)).norm() * 1000;
+  EXPECT_NEAR(pitch_um / (test::kPi * 70 / 27'489 * 1000), 70.01 / 70, 1e-6);
+  EXPECT_LT((marked(27'489) - marked(0)).norm(), 1e-9);
+}
+
 TEST(Landing, OfAFlatPanelIsTheSameCode) {
   const LineTiming timing = roller_timing();
   const LineGeometry geometry = plane_geometry(timing, {0.008, 0.008}, roller_head()).value();

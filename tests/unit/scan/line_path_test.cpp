@@ -143,10 +143,12 @@ TEST(LinePath, ChoosesJerkOrAccelerationItselfWhereOneIsNotLimited) {
   EXPECT_LE(path.value().turn_after(Direction::forward)[0].peak_acceleration_mm_s2, 4e7);
   head = roller_head();
   head.max_acceleration_mm_s2 = std::nullopt;
-  head.max_jerk_mm_s3 = 2e11;  // 4 sqrt(v/j)... the acceleration has to run free: 2 sqrt(2 v/j) = 800 us
+  head.max_jerk_mm_s3 = 2e11;
   const auto free = LinePath::plan(timing, roller_geometry(timing, head), true);
   ASSERT_TRUE(free) << free.error().message;
-  EXPECT_LE(free.value().turn_after(Direction::forward)[0].peak_jerk_mm_s3, 2e11);
+  const MirrorTurn& turn = free.value().turn_after(Direction::forward)[0];
+  EXPECT_LE(turn.peak_jerk_mm_s3, 2e11);
+  EXPECT_NEAR(turn.shortest_s, 2 * std::sqrt(2 * 16'000 / 2e11), 1e-12) << "800 us, the acceleration runs free";
 }
 
 TEST(LinePath, ReverseLinesAreForwardLinesBackwardsInTime) {
@@ -168,6 +170,27 @@ TEST(LinePath, HoldsTheSpeedWhereThePulsesOfReverseLinesAreLater) {
   const double pitch = path.at(Direction::reverse, last - 1).u_mm - path.at(Direction::reverse, last).u_mm;
   EXPECT_NEAR(pitch, 0.008, 1e-12);
   EXPECT_NEAR(path.at(Direction::reverse, last).u_mm, -13.996 - 12 * 0.008, 1e-12) << "the path itself is not moved";
+}
+
+TEST(LinePath, IsTheSineOfTheAngleOffAxisToo) {
+  const LineTiming timing = roller_timing();
+  CylinderLines lines = test::tube_lines();
+  lines.offset_deg = 20;
+  const LinePath path = LinePath::plan(timing, cylinder_geometry(timing, lines, roller_head()).value(), true).value();
+  const double radius = 0.9;
+  const double offset = test::kPi / 9;
+  const double per_slot = 2 * test::kPi / 40 / 5400;
+  for (double slot = 950; slot <= 4449; slot += 13.7) {
+    const double angle = offset - per_slot * (slot - 2699.5);
+    const auto field = path.at(Direction::forward, slot);
+    ASSERT_NEAR(field.v_mm, radius * std::sin(angle), 1e-13);
+    ASSERT_NEAR(field.w_mm, radius * (std::cos(angle) - std::cos(offset)), 1e-13);
+  }
+  const auto v = [&path](double slot) { return path.at(Direction::forward, slot).v_mm; };
+  const double h = 300 * timing.slot_s();
+  const double a = (v(3300) - 2 * v(3000) + v(2700)) / (h * h);
+  const double speed = per_slot / timing.slot_s();
+  EXPECT_NEAR(a, -radius * speed * speed * std::sin(offset - per_slot * 300.5), std::abs(a) * 1e-4);
 }
 
 TEST(LinePath, RefusesWhatTheScannerCannotDo) {

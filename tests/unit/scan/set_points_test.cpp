@@ -90,6 +90,17 @@ TEST(SetPoints, AreWrittenAsCsv) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 271);
 }
 
+TEST(SetPoints, JointsKeepTheirSpeedLimits) {
+  LineGeometry geometry = roller_geometry();
+  const double speed = 2 * test::kPi / 27'489 / (5400 * 0.5e-6);  // of the rotary axis, rad/s
+  geometry.machine.joints[0].limits.max_speed = 1.001 * speed;
+  EXPECT_TRUE(make_line_trajectory(roller_timing(), geometry, {}));
+  geometry.machine.joints[0].limits.max_speed = 0.999 * speed;
+  const auto refused = make_line_trajectory(roller_timing(), geometry, {});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("joint c moves at"), std::string::npos) << refused.error().message;
+}
+
 TEST(SetPoints, GeometriesThatDoNotFitTheMachineAreRefused) {
   LineGeometry geometry = roller_geometry();
   geometry.per_slot.pop_back();
