@@ -11,7 +11,7 @@ int usage() {
   std::fputs("usage: gravure_make_samples NAME FOLDER\nwrites the pictures of a sample into FOLDER. NAME is one of\n",
              stderr);
   for (const auto& set : gravure::samples::sample_sets()) {
-    std::fprintf(stderr, "  %-8s %s\n", std::string(set.name).c_str(), std::string(set.about).c_str());
+    std::fprintf(stderr, "  %-14s %s\n", std::string(set.name).c_str(), std::string(set.about).c_str());
   }
   return 2;
 }

@@ -1,5 +1,6 @@
 #include "sample_sets.hpp"
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "format_set.hpp"
@@ -9,6 +10,10 @@
 
 namespace gravure::samples {
 namespace {
+
+constexpr std::int64_t kRollerColumns = 15'000;
+constexpr std::int64_t kRollerLines = 7840;
+constexpr std::int64_t kPanelPixels = 5000;
 
 constexpr std::int64_t kSmallPixels = 200;
 constexpr std::int64_t kSmallLines = 240;
@@ -80,6 +85,41 @@ Result<void> make_small(const std::string& folder) {
   return {};
 }
 
+/// Row of a lattice of diamonds of 40 x 32 pixels that grow along the row and shrink from layer to layer: where a pixel
+/// belongs shows in its neighbourhood, and no mirror image is alike.
+RowSource diamonds(std::int64_t layer, std::int64_t width) {
+  return [layer, width](std::int64_t y, std::vector<std::uint16_t>& levels) {
+    constexpr std::int64_t kAlong = 40;
+    constexpr std::int64_t kAround = 32;
+    for (std::int64_t x = 0; x < width; ++x) {
+      const std::int64_t from_middle = std::abs(x % kAlong - kAlong / 2) + std::abs(y % kAround - kAround / 2);
+      const std::int64_t radius = 14 + 12 * x / width - layer;
+      levels[static_cast<std::size_t>(x)] = from_middle < radius ? 65535 : 0;
+    }
+  };
+}
+
+Result<void> make_diamonds(const std::string& folder, std::int64_t width, std::int64_t height, std::int64_t layers) {
+  FileOptions options;
+  options.compression = "ccittfax4";
+  options.x_dots_per_mm = options.y_dots_per_mm = 125;  // 8 um
+  for (std::int64_t layer = 0; layer < layers; ++layer) {
+    const std::string path = folder + "/layer_" + std::to_string(layer) + ".tif";
+    GRAVURE_CHECK(write_image(path, width, height, {diamonds(layer, width)}, options));
+  }
+  return {};
+}
+
+/// Eight layers of a face of 120 mm, for samples/helical_roller/job.toml.
+Result<void> make_helical_roller(const std::string& folder) {
+  return make_diamonds(folder, kRollerColumns, kRollerLines, 8);
+}
+
+/// Four layers of a panel of 40 x 40 mm, for samples/panel/job.toml.
+Result<void> make_panel(const std::string& folder) {
+  return make_diamonds(folder, kPanelPixels, kPanelPixels, 4);
+}
+
 Result<void> make_formats(const std::string& folder) {
   for (const FormatFile& file : format_files()) {
     std::vector<RowSource> pages;
@@ -98,6 +138,8 @@ const std::vector<SampleSet>& sample_sets() {
   static const std::vector<SampleSet> sets = {
       {"roller", "16-bit depth map of a honeycomb, 3500 x 27489 pixels", make_roller},
       {"stent", "bilevel G4 mask of a diamond lattice, 3000 x 942 pixels", make_stent},
+      {"helical_roller", "eight bilevel G4 layers of a roller face, 15000 x 7840 pixels", make_helical_roller},
+      {"panel", "four bilevel G4 layers of a panel, 5000 x 5000 pixels", make_panel},
       {"small", "six bilevel layers of 200 x 240 pixels, upright and on their side", make_small},
       {"formats", "one small picture in every format that is read", make_formats},
   };

@@ -59,9 +59,9 @@ Result<int> run(const Options& options, const Command& command) {
   if (command.json) {
     print_json(result);
   } else {
-    print(fmt::format("{}: {} revolutions from {} stored layers; {} fires, {:.2f} % of the pixels\n", options.output,
-                      header.plan.job.revolutions, header.layers.size(), polarity_name(header.fires),
-                      result["fired_percent"].get<double>()));
+    print(fmt::format("{}: {} {} from {} stored layers; {} fires, {:.2f} % of the pixels\n", options.output,
+                      header.plan.job.revolutions, turns_name(header.plan), header.layers.size(),
+                      polarity_name(header.fires), result["fired_percent"].get<double>()));
   }
   return kDone;
 }

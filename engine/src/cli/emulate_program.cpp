@@ -266,18 +266,21 @@ void print_run(const EmulateOptions& options, const Command& command, const Plan
   if (command.json) {
     const fpga::AbRegisters registers = registers_of(plan.ab);
     Json axis = axis_json(registers, end);
-    axis["workpiece_turns"] = json_ratio(turns);
+    axis[plan.mode == Mode::flat ? "passes" : "workpiece_turns"] = json_ratio(turns);
     Json result = {{"program", options.program},
                    {"lines", status.lines_executed},
                    {"ticks", json_integer(Integer(status.tick))},
                    {"planned_ticks", json_integer(Integer(plan.job.ticks))},
                    {"fired_slots", json_integer(Integer(run.fired))},
                    {"edges", json_integer(Integer(status.axis.edges))},
-                   {"axis", axis},
-                   {"fault", to_string(status.fault)},
+                   {"axis", axis}};
+    if (plan.carriage) {
+      result["carriage"] = axis_json(registers_of(plan.carriage->ab), end);
+    }
+    result.update({{"fault", to_string(status.fault)},
                    {"fault_register", static_cast<int>(status.fault)},
                    {"dark_lines", dark_lines},
-                   {"dark", dark_json(run.dark, plan)}};
+                   {"dark", dark_json(run.dark, plan)}});
     if (options.from || options.to) {
       result["window"] = {{"from", json_integer(Integer(run.window.first))},
                           {"to", json_integer(Integer(run.window.last))},
@@ -297,8 +300,12 @@ void print_run(const EmulateOptions& options, const Command& command, const Plan
     text += fmt::format("window: ticks {} to {}; only lines {} to {} were run, counted over the job\n",
                         run.window.first, run.window.last, run.lines.first, run.lines.last);
   }
-  text += fmt::format("axis: {:.9f} turns of the workpiece at tick {}, exactly {}\n", to_double(turns), status.tick,
-                      turns.str());
+  text +=
+      fmt::format("axis: {:.9f} {} at tick {}, exactly {}\n", to_double(turns),
+                  plan.mode == Mode::flat ? "passes of the stage" : "turns of the workpiece", status.tick, turns.str());
+  if (plan.carriage) {
+    text += fmt::format("carriage: {} A-B edges of the second channel\n", status.carriage.edges);
+  }
   for (const DarkLines& lines : run.dark) {
     text += fmt::format("dark from tick {} ({}) to {}: {} lines, fault register {} ({}): {}\n", lines.tick,
                         place_text(lines.first, plan), place_text(lines.last, plan), lines.last - lines.first + 1,

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "gravure/core/file_output.hpp"
@@ -19,7 +21,7 @@ struct Options {
   std::string folder = ".";
 };
 
-constexpr int kLayers = 2;
+const std::map<std::string, Mode> kModes = {{"rotary", Mode::rotary}, {"helical", Mode::helical}, {"flat", Mode::flat}};
 
 /// A diamond lattice that closes round the circumference; the second layer keeps only its crossings.
 std::vector<std::byte> starter_picture(int layer) {
@@ -39,13 +41,13 @@ std::vector<std::byte> starter_picture(int layer) {
   return bits;
 }
 
-Result<void> write_starter(const fs::path& job, const fs::path& layers, std::vector<std::string>& written) {
+Result<void> write_starter(Mode mode, const fs::path& job, const fs::path& layers, std::vector<std::string>& written) {
   std::error_code failed;
   fs::create_directories(layers, failed);
   if (failed) {
     return Error{ErrorCode::io, layers.string() + ": cannot make the folder: " + failed.message()};
   }
-  for (int layer = 0; layer < kLayers; ++layer) {
+  for (int layer = 0; layer < kStarterLayers; ++layer) {
     if (cancel_token().cancelled()) {
       return Error{ErrorCode::cancelled, "stopped before the job was complete; nothing was written"};
     }
@@ -58,7 +60,7 @@ Result<void> write_starter(const fs::path& job, const fs::path& layers, std::vec
     GRAVURE_CHECK(writer.commit());
     written.push_back(path);
   }
-  GRAVURE_CHECK(write_file(job.string(), starter_job(Mode::rotary)));
+  GRAVURE_CHECK(write_file(job.string(), starter_job(mode)));
   written.insert(written.begin(), job.string());
   return {};
 }
@@ -75,7 +77,8 @@ Result<int> run(const Options& options, const Command& command) {
   cancel_token();  // before there is a folder: from here on Ctrl-C takes it away again
   const bool made_folder = !fs::exists(fs::symlink_status(options.folder, failed));
   std::vector<std::string> written;
-  if (Result<void> done = write_starter(job, layers, written); !done) {  // so that it can be tried again
+  if (Result<void> done = write_starter(kModes.at(options.mode), job, layers, written);
+      !done) {  // so that it can be tried again
     fs::remove_all(made_folder ? fs::path(options.folder) : layers, failed);
     return done.error();
   }
@@ -95,7 +98,9 @@ Result<int> run(const Options& options, const Command& command) {
 void add_init(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "init", "Write a commented starter job that runs as it is");
   const auto options = std::make_shared<Options>();
-  verb->add_option("--mode", options->mode, "Kind of job: rotary")->required()->check(CLI::IsMember({"rotary"}));
+  verb->add_option("--mode", options->mode, "Kind of job: rotary, helical or flat")
+      ->required()
+      ->check(CLI::IsMember({"rotary", "helical", "flat"}));
   verb->add_option("DIR", options->folder, "Folder to write to")->capture_default_str();
   verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
 }

@@ -41,8 +41,12 @@ std::string text_of(const ProgramHeader& header, const std::string& path) {
   std::string text =
       fmt::format("program   {} (format {}), made from {}\n", path, header.format_version, header.job_path);
   text += plan_text(header.plan);
-  text += fmt::format("images    {} fires; {} sources, {} stored layers, {} revolutions\n", polarity_name(header.fires),
-                      header.sources.size(), header.layers.size(), header.layer_of_revolution.size());
+  text += fmt::format("images    {} fires; {} sources, {} stored layers, {} {}\n", polarity_name(header.fires),
+                      header.sources.size(), header.layers.size(), header.layer_of_revolution.size(),
+                      turns_name(header.plan));
+  if (header.plan.carriage) {
+    return text;  // what a revolution shows is none of the layers
+  }
   constexpr std::size_t kShown = 20;
   for (std::size_t i = 0; i < header.layers.size() && i < kShown; ++i) {
     const StoredLayer& layer = header.layers[i];

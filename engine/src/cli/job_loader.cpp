@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/job_file.hpp"
@@ -50,17 +52,17 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
   std::optional<std::int64_t> layers = image.levels;
   if (loaded.images) {
     layers = loaded.images->layers;
-    loaded.pixels_per_line = scan_size(image, loaded.images->width(), loaded.images->height()).pixels_per_line;
-    if (image.pixels_per_line && *image.pixels_per_line != loaded.pixels_per_line) {
+    loaded.columns = scan_size(image, loaded.images->width(), loaded.images->height()).pixels_per_line;
+    if (image.pixels_per_line && *image.pixels_per_line != loaded.columns) {
       return Error{ErrorCode::bad_argument, loaded.job.place_of("image.pixels_per_line") +
                                                 "image.pixels_per_line = " + std::to_string(*image.pixels_per_line) +
-                                                ": the images have " + std::to_string(loaded.pixels_per_line)};
+                                                ": the images have " + std::to_string(loaded.columns)};
     }
   } else {
-    loaded.pixels_per_line = image.pixels_per_line.value_or(0);
+    loaded.columns = image.pixels_per_line.value_or(0);
   }
-  GRAVURE_TRY(loaded.revolutions, resolve_revolutions(loaded.job, layers));
-  GRAVURE_TRY(loaded.plan, make_plan(loaded.job, loaded.pixels_per_line, loaded.revolutions));
+  GRAVURE_TRY(const std::int64_t exposures, resolve_revolutions(loaded.job, layers));
+  GRAVURE_TRY(loaded.plan, make_plan(loaded.job, loaded.columns, exposures));
   if (loaded.images) {
     GRAVURE_TRY(const std::vector<std::string> warnings, check_stack(loaded.plan, loaded.job, *loaded.images));
     std::vector<std::string>& all = loaded.plan.warnings;
@@ -68,15 +70,28 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
     all.insert(all.end(), warnings.begin(), warnings.end());
   } else if (names_images(image)) {
     loaded.plan.warnings.emplace_back("the images are not there yet; planned with image.pixels_per_line = " +
-                                      std::to_string(loaded.pixels_per_line));
+                                      std::to_string(loaded.columns));
   }
   return loaded;
+}
+
+std::int64_t StoredLayers::image_layer(std::int64_t revolution) const {
+  return layer_of_revolution(order_, layers_, revolution % revolutions_per_band(plan_));
+}
+
+std::uint32_t StoredLayers::number(std::int64_t revolution) {
+  if (plan_.carriage) {
+    return static_cast<std::uint32_t>(revolution);
+  }
+  const auto next = static_cast<std::uint32_t>(known_.size());
+  const std::int64_t band = revolution / revolutions_per_band(plan_);
+  return known_.try_emplace({band, image_layer(revolution), map_.runs_backwards(revolution)}, next).first->second;
 }
 
 LayerStack stack_settings(const ImageSettings& image, const Plan& plan) {
   LayerStack stack;
   stack.lines = plan.rotary.lines_per_revolution;
-  stack.pixels = plan.line.pixels;
+  stack.pixels = image_columns(plan);
   stack.lines_along = image.lines_along;
   stack.fires = image.fires;
   stack.threshold = image.threshold;
@@ -93,6 +108,76 @@ struct Compilation {
   ProgramHeader header;
   LayerStack stack;
 };
+
+/// The images as they become sources of the program, each once.
+class Sources {
+ public:
+  Sources(const ImageStack& images, fs::path job_folder, std::vector<SourceImage>& sources)
+      : images_(images), job_folder_(std::move(job_folder)), sources_(sources) {}
+
+  /// Number of the source that a layer of the stack comes from.
+  Result<std::int64_t> of_layer(std::int64_t layer) {
+    const std::int64_t index = images_.depth_map ? 0 : layer;
+    const auto [source, is_new] = known_.try_emplace(index, static_cast<std::int64_t>(sources_.size()));
+    if (is_new) {
+      const StackImage& image = images_.images[static_cast<std::size_t>(index)];
+      std::string& hash = hashes_[image.path];
+      if (hash.empty()) {
+        GRAVURE_TRY(hash, sha256_file(image.path));
+      }
+      sources_.push_back({relative_to(image.path, job_folder_), image.page, image.info.width, image.info.height, hash});
+    }
+    return source->second;
+  }
+  LayerInput input(std::int64_t layer) const {
+    const StackImage& image = images_.images[static_cast<std::size_t>(images_.depth_map ? 0 : layer)];
+    return {image.path, image.page, images_.depth_map ? layer : 0};
+  }
+
+ private:
+  const ImageStack& images_;
+  fs::path job_folder_;
+  std::vector<SourceImage>& sources_;
+  std::map<std::int64_t, std::int64_t> known_;  // image of the stack -> source of the program
+  std::map<std::string, std::string> hashes_;
+};
+
+/// The images that are exposed, in each band and in each direction of the stage.
+Result<void> add_layers(const LoadedJob& loaded, const fs::path& job_folder, Compilation& made) {
+  ProgramHeader& header = made.header;
+  Sources sources(*loaded.images, job_folder, header.sources);
+  StoredLayers stored(loaded.plan, loaded.job.image.order, loaded.images->layers);
+  for (std::int64_t r = 0; r < loaded.plan.job.revolutions; ++r) {
+    header.layer_of_revolution.push_back(stored.number(r));
+    if (header.layer_of_revolution.back() < header.layers.size()) {
+      continue;
+    }
+    StoredLayer layer;
+    layer.starts_reverse = line_is_reverse(loaded.plan, r, 0);
+    GRAVURE_TRY(layer.source, sources.of_layer(stored.image_layer(r)));
+    made.stack.layers.push_back(sources.input(stored.image_layer(r)));
+    layer.level = made.stack.layers.back().level;
+    header.layers.push_back(layer);
+  }
+  return {};
+}
+
+/// Helical: every revolution shows a part of every image, no two the same.
+Result<void> add_helical_layers(const ImageStack& images, const fs::path& job_folder, Compilation& made) {
+  ProgramHeader& header = made.header;
+  Sources sources(images, job_folder, header.sources);
+  for (std::int64_t layer = 0; layer < images.layers; ++layer) {
+    GRAVURE_CHECK(sources.of_layer(layer));
+    made.stack.layers.push_back(sources.input(layer));
+  }
+  for (std::int64_t r = 0; r < header.plan.job.revolutions; ++r) {
+    StoredLayer revolution;
+    revolution.starts_reverse = line_is_reverse(header.plan, r, 0);
+    header.layers.push_back(revolution);
+    header.layer_of_revolution.push_back(static_cast<std::uint32_t>(r));
+  }
+  return {};
+}
 
 Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::string& program_path) {
   Compilation made;
@@ -113,35 +198,8 @@ Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::stri
   made.stack.random_access = std::all_of(images.images.begin(), images.images.end(),
                                          [](const StackImage& image) { return image.info.random_access; });
 
-  std::map<std::int64_t, std::uint32_t> stored;  // layer of the stack -> layer of the program
-  std::map<std::int64_t, std::int64_t> sources;  // image of the stack -> source of the program
-  std::map<std::string, std::string> hashes;
-  for (std::int64_t r = 0; r < loaded.revolutions; ++r) {
-    const std::int64_t layer = layer_of_revolution(loaded.job.image.order, images.layers, r);
-    const auto [known, is_new] = stored.try_emplace(layer, static_cast<std::uint32_t>(header.layers.size()));
-    header.layer_of_revolution.push_back(known->second);
-    if (!is_new) {
-      continue;
-    }
-    const std::int64_t image_index = images.depth_map ? 0 : layer;
-    const StackImage& image = images.images[static_cast<std::size_t>(image_index)];
-    const auto [source, new_source] =
-        sources.try_emplace(image_index, static_cast<std::int64_t>(header.sources.size()));
-    if (new_source) {
-      std::string& hash = hashes[image.path];
-      if (hash.empty()) {
-        GRAVURE_TRY(hash, sha256_file(image.path));
-      }
-      header.sources.push_back(
-          {relative_to(image.path, job_folder), image.page, image.info.width, image.info.height, hash});
-    }
-    StoredLayer stored_layer;
-    stored_layer.starts_reverse = line_is_reverse(loaded.plan, r, 0);
-    stored_layer.source = source->second;
-    stored_layer.level = images.depth_map ? layer : 0;
-    header.layers.push_back(stored_layer);
-    made.stack.layers.push_back({image.path, image.page, stored_layer.level});
-  }
+  GRAVURE_CHECK(loaded.plan.carriage ? add_helical_layers(images, job_folder, made)
+                                     : add_layers(loaded, job_folder, made));
   return made;
 }
 

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 
+#include "gravure/core/exposure_map.hpp"
 #include "gravure/core/job.hpp"
 #include "gravure/core/plan.hpp"
 #include "gravure/core/program.hpp"
@@ -17,9 +21,8 @@ namespace gravure::cli {
 struct LoadedJob {
   Job job;
   std::optional<ImageStack> images;
-  std::int64_t pixels_per_line = 0;
-  std::int64_t revolutions = 0;
-  Plan plan;  ///< its warnings hold those of the images, too
+  std::int64_t columns = 0;  ///< pixels of an image line
+  Plan plan;                 ///< its warnings hold those of the images, too
 };
 
 /// Reads and plans a job. A job that gives pixels_per_line can be planned without its images, unless `need_images`.
@@ -28,6 +31,25 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
 /// Compiles a loaded job (with its images) to the program file `output`; layers that no revolution uses are left out.
 Result<ProgramHeader> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const std::string& output,
                                   const GrvOptions& grv, const Command& command);
+
+/// Which layer a program stores for each of its revolutions: one for each image, band and direction of the stage,
+/// numbered as they are first used; in helical mode one for each revolution.
+class StoredLayers {
+ public:
+  /// `layers`: images there are.
+  StoredLayers(const Plan& plan, LayerOrder order, std::int64_t layers)
+      : plan_(plan), map_(plan), order_(order), layers_(layers) {}
+  /// Revolutions are asked for one after the other, from 0.
+  std::uint32_t number(std::int64_t revolution);
+  std::int64_t image_layer(std::int64_t revolution) const;
+
+ private:
+  const Plan& plan_;
+  ExposureMap map_;
+  LayerOrder order_;
+  std::int64_t layers_;
+  std::map<std::tuple<std::int64_t, std::int64_t, bool>, std::uint32_t> known_;  // band, image, backwards
+};
 
 /// Settings of a stack that come from the job.
 LayerStack stack_settings(const ImageSettings& image, const Plan& plan);

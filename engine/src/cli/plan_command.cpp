@@ -18,16 +18,39 @@ const char* order_name(LayerOrder order) {
   return order == LayerOrder::sequence ? "sequence" : order == LayerOrder::cycle ? "cycle" : "hold";
 }
 
+std::string number(const Rational& value) {
+  return denominator_of(value) == 1 ? to_string(value) : fmt::format("{:.8g}", to_double(value));
+}
+
+std::string counter_text(const AbPlan& ab) {
+  std::string counter =
+      fmt::format("increment {} every {} ticks, {} bits", ab.increment, ab.prescaler, ab.counter_bits);
+  if (ab.fraction_num != 0) {
+    counter += fmt::format(", fraction {}/{}", ab.fraction_num, ab.fraction_den);
+  }
+  return fmt::format("{}: {:.6f} Hz, wanted {:.6f} Hz", counter, to_double(ab.output_hz), to_double(ab.wanted_hz));
+}
+
+std::string seam_text(const AbPlan& ab, bool flat) {
+  if (ab.exact) {
+    return fmt::format("drift 0: exact, for ever (limit {} um)", to_decimal_string(ab.seam_limit_um));
+  }
+  return fmt::format(
+      "drift {:.6g} um a {} = {} lines; limit {} um reached after {} {} ({} lines); the published "
+      "bound would allow {} lines",
+      to_double(ab.drift_um_per_revolution), flat ? "pass" : "revolution", to_string(ab.drift_lines_per_revolution),
+      to_decimal_string(ab.seam_limit_um), to_string(*ab.revolutions_until_limit), flat ? "passes" : "revolutions",
+      to_string(*ab.lines_until_limit), to_string(ab.bound_lines_until_limit));
+}
+
 }  // namespace
 
 std::string plan_text(const Plan& plan) {
-  const auto number = [](const Rational& value) {
-    return denominator_of(value) == 1 ? to_string(value) : fmt::format("{:.8g}", to_double(value));
-  };
   std::string text;
   const auto row = [&](const char* name, const std::string& value) { text += fmt::format("{:<10}{}\n", name, value); };
-  row("job", fmt::format("{} (rotary), {} revolutions, {} ticks = {:.3f} s", plan.title, plan.job.revolutions,
-                         plan.job.ticks, to_double(plan.job.duration_s)));
+  const bool flat = plan.mode == Mode::flat;
+  row("job", fmt::format("{} ({}), {} {}, {} ticks = {:.3f} s", plan.title, mode_name(plan.mode), plan.job.revolutions,
+                         turns_name(plan), plan.job.ticks, to_double(plan.job.duration_s)));
   row("clock", fmt::format("seed {} Hz, FPGA {} Hz, pulses {} Hz (every seed pulse no. {}), {} ticks a slot",
                            plan.clock.seed_hz, plan.clock.fpga_hz, number(plan.clock.pulse_hz),
                            plan.clock.pulse_divider, plan.clock.ticks_per_slot));
@@ -36,27 +59,31 @@ std::string plan_text(const Plan& plan) {
                   plan.line.ticks, number(plan.line.rate_hz), number(plan.line.scan_speed_m_s)));
   row("window", fmt::format("first slot {} forward, {} reverse{}", plan.line.forward_first_slot,
                             plan.line.reverse_first_slot, plan.line.bidirectional ? "" : " (unused: one direction)"));
-  row("rotary",
-      fmt::format("{} lines a revolution, pitch {} um ({:.1f} DPI), {} ticks a revolution, {} rpm, surface {} mm/s",
-                  plan.rotary.lines_per_revolution, number(plan.rotary.line_pitch_um),
-                  25400.0 / to_double(plan.rotary.line_pitch_um), plan.rotary.ticks_per_revolution,
-                  number(plan.rotary.rpm), number(plan.rotary.surface_speed_mm_s)));
-  std::string counter =
-      fmt::format("increment {} every {} ticks, {} bits", plan.ab.increment, plan.ab.prescaler, plan.ab.counter_bits);
-  if (plan.ab.fraction_num != 0) {
-    counter += fmt::format(", fraction {}/{}", plan.ab.fraction_num, plan.ab.fraction_den);
+  if (plan.bands) {
+    row("bands", fmt::format("{} of {} pixels for {} columns, {} {} each", plan.bands->count, plan.line.pixels,
+                             plan.bands->columns, plan.bands->revolutions_per_band, turns_name(plan)));
   }
-  row("A-B", fmt::format("{}: {:.6f} Hz, wanted {:.6f} Hz", counter, to_double(plan.ab.output_hz),
-                         to_double(plan.ab.wanted_hz)));
-  if (plan.ab.exact) {
-    row("seam", fmt::format("drift 0: exact, for ever (limit {} um)", to_decimal_string(plan.ab.seam_limit_um)));
+  const std::string pitch = fmt::format("pitch {} um ({:.1f} DPI)", number(plan.rotary.line_pitch_um),
+                                        25400.0 / to_double(plan.rotary.line_pitch_um));
+  if (flat) {
+    row("stage", fmt::format("{} lines a pass, {}, {} ticks a pass, {} mm/s", plan.rotary.lines_per_revolution, pitch,
+                             plan.rotary.ticks_per_revolution, number(plan.rotary.surface_speed_mm_s)));
   } else {
-    row("seam",
-        fmt::format("drift {:.6g} um a revolution = {} lines; limit {} um reached after {} revolutions ({} lines); "
-                    "the published bound would allow {} lines",
-                    to_double(plan.ab.drift_um_per_revolution), to_string(plan.ab.drift_lines_per_revolution),
-                    to_decimal_string(plan.ab.seam_limit_um), to_string(*plan.ab.revolutions_until_limit),
-                    to_string(*plan.ab.lines_until_limit), to_string(plan.ab.bound_lines_until_limit)));
+    row("rotary", fmt::format("{} lines a revolution, {}, {} ticks a revolution, {} rpm, surface {} mm/s",
+                              plan.rotary.lines_per_revolution, pitch, plan.rotary.ticks_per_revolution,
+                              number(plan.rotary.rpm), number(plan.rotary.surface_speed_mm_s)));
+  }
+  row("A-B", counter_text(plan.ab));
+  row("seam", seam_text(plan.ab, flat));
+  if (plan.carriage) {
+    const CarriagePlan& carriage = *plan.carriage;
+    row("carriage", fmt::format("{} columns = {} um a revolution, {} layers in windows of {} columns, {} columns, {} "
+                                "mm/s, {} mm in all",
+                                to_decimal_string(carriage.feed_pixels), number(carriage.feed_um), carriage.layers,
+                                carriage.window_columns, carriage.columns, number(carriage.speed_mm_s),
+                                number(carriage.travel_mm)));
+    row("A-B 1", counter_text(carriage.ab));
+    row("drift", seam_text(carriage.ab, flat));
   }
   return text;
 }

@@ -62,7 +62,7 @@ Result<void> refuse_overwrite(const std::string& output, const std::vector<std::
 Result<FoundImages> find_images(const ProgramHeader& header, const std::string& program_path,
                                 const std::string& images_folder, const ImageOpener& opener) {
   FoundImages found;
-  std::vector<std::string> paths;
+  std::vector<std::string>& paths = found.paths;
   bool any = false;
   for (const SourceImage& source : header.sources) {
     paths.push_back(locate_source(source, header, program_path, images_folder));
@@ -81,15 +81,34 @@ Result<FoundImages> find_images(const ProgramHeader& header, const std::string& 
   if (!any) {
     return found;
   }
+  if (header.plan.carriage && header.sources.size() != 1 &&
+      static_cast<std::int64_t>(header.sources.size()) != header.plan.carriage->layers) {
+    return Error{ErrorCode::bad_file, "the program has " + std::to_string(header.sources.size()) + " sources for " +
+                                          std::to_string(header.plan.carriage->layers) + " layers: compile it again"};
+  }
   GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));
   LayerStack stack = stack_settings(job.image, header.plan);
-  for (const StoredLayer& layer : header.layers) {
-    const auto source = static_cast<std::size_t>(layer.source);
-    stack.layers.push_back({paths[source], header.sources[source].page, layer.level});
+  const auto layers = static_cast<std::int64_t>(header.layers.size());
+  for (std::int64_t layer = 0; layer < (header.plan.carriage ? header.plan.carriage->layers : layers); ++layer) {
+    const LayerOrigin origin = origin_of(header, layer);
+    stack.layers.push_back({paths[origin.source], header.sources[origin.source].page, origin.level});
   }
   learn_images(stack, opener);
   found.stack = std::move(stack);
   return found;
+}
+
+LayerOrigin origin_of(const ProgramHeader& header, std::int64_t layer) {
+  if (!header.plan.carriage) {
+    const StoredLayer& stored = header.layers[static_cast<std::size_t>(layer)];
+    return {static_cast<std::size_t>(stored.source), stored.level};
+  }
+  const bool depth_map = header.sources.size() == 1;  // a stack has a source for each layer
+  return depth_map ? LayerOrigin{0, layer} : LayerOrigin{static_cast<std::size_t>(layer), 0};
+}
+
+const char* turns_name(const Plan& plan) {
+  return plan.mode == Mode::flat ? "passes" : "revolutions";
 }
 
 const char* direction_name(bool reverse) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gravure/core/layer_lines.hpp"
 #include "gravure/core/program.hpp"
@@ -18,6 +19,7 @@ DeviceFactory emulated_devices();
 /// others are still in the stack, and there is none only where all are missing.
 struct FoundImages {
   std::optional<LayerStack> stack;
+  std::vector<std::string> paths;  ///< of each source, where it is or was sought first
   std::vector<std::string> missing;
 };
 
@@ -30,9 +32,18 @@ Result<FoundImages> find_images(const ProgramHeader& header, const std::string& 
 std::string locate_source(const SourceImage& source, const ProgramHeader& header, const std::string& program_path,
                           const std::string& images_folder);
 
+/// Where image `layer` of a program comes from: number of its source, and its slice of a depth map (else 0).
+struct LayerOrigin {
+  std::size_t source = 0;
+  std::int64_t level = 0;
+};
+LayerOrigin origin_of(const ProgramHeader& header, std::int64_t layer);
+
 /// Fails with bad_argument where `output` is one of the files that are being read.
 Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs);
 
+/// What a job counts: "revolutions", or "passes" in flat mode.
+const char* turns_name(const Plan& plan);
 /// "forward" or "reverse".
 const char* direction_name(bool reverse);
 const char* polarity_name(Fires fires);

@@ -88,10 +88,17 @@ Result<int> run(Options options, const Command& command) {
   GRAVURE_TRY(options.tolerances.diameter_um, decimal_option("--diameter-um", options.diameter_um));
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.job, files, false));
+  if (loaded.job.mode != Mode::rotary) {
+    return Error{ErrorCode::bad_argument,
+                 loaded.job.place_of("job.mode") + "job.mode = \"" + std::string(mode_name(loaded.job.mode)) +
+                     "\": suggest looks at rotary jobs; here set fpga.fractional = true, which has no drift at all, or "
+                     "raise scanner.max_extra_slots"};
+  }
+  const std::int64_t revolutions = revolutions_per_band(loaded.plan);
   GRAVURE_TRY(const std::vector<Suggestion> found,
-              suggest(loaded.job, loaded.pixels_per_line, loaded.revolutions, options.tolerances));
+              suggest(loaded.job, loaded.columns, revolutions, options.tolerances));
   GRAVURE_TRY(const SuggestOutlook outlook,
-              suggest_outlook(loaded.job, loaded.pixels_per_line, loaded.revolutions, options.tolerances));
+              suggest_outlook(loaded.job, loaded.columns, revolutions, options.tolerances));
   if (command.json) {
     Json suggestions = Json::array();
     for (const Suggestion& suggestion : found) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gravure/formats/grv.hpp"
@@ -17,7 +18,8 @@ namespace {
 
 struct Options {
   std::string program;
-  std::int64_t revolution = 0;
+  std::optional<std::int64_t> revolution;  // this, or
+  std::optional<std::int64_t> layer;       // this one
   std::string output;
   std::string compression = "source";
 };
@@ -46,9 +48,23 @@ TiffCompression compression_of_source(const std::string& path, std::int64_t page
   return found == known.end() ? TiffCompression::deflate : found->second;
 }
 
+/// Where the picture comes from, unless what is asked for is not there.
+std::optional<LayerOrigin> picture_origin(const ProgramHeader& header, const Options& options) {
+  const bool helical = header.plan.carriage.has_value();
+  if (options.layer) {
+    const bool there = *options.layer >= 0 && *options.layer < image_layers(header);
+    return there ? std::optional(origin_of(header, *options.layer)) : std::nullopt;
+  }
+  if (helical || *options.revolution < 0 || *options.revolution >= header.plan.job.revolutions) {
+    return std::nullopt;
+  }
+  return origin_of(header, header.layer_of_revolution[static_cast<std::size_t>(*options.revolution)]);
+}
+
 /// The size tags and the photometric sense of the source, where it is still there, so that the picture equals a layer
 /// written the same way; else its size on the workpiece.
-Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& options) {
+Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& options,
+                                const std::optional<LayerOrigin>& origin) {
   const UnrolledSize size = unrolled_size(header);
   const double along = 1000.0 / to_double(header.plan.line.pixel_pitch_um);
   const double across = 1000.0 / to_double(header.plan.rotary.line_pitch_um);
@@ -59,11 +75,10 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& opti
   page.compression = options.compression == "source" ? TiffCompression::deflate : compression_of(options.compression);
   page.x_dots_per_mm = rows ? along : across;
   page.y_dots_per_mm = rows ? across : along;
-  if (options.revolution < 0 || options.revolution >= header.plan.job.revolutions) {
+  if (!origin) {
     return page;  // unroll() says what is wrong
   }
-  const std::uint32_t layer = header.layer_of_revolution[static_cast<std::size_t>(options.revolution)];
-  const SourceImage& source = header.sources[static_cast<std::size_t>(header.layers[layer].source)];
+  const SourceImage& source = header.sources[origin->source];
   const std::string path = locate_source(source, header, options.program, {});
   GRAVURE_CHECK(refuse_overwrite(options.output, {options.program, path}));
   const ImageFiles files;
@@ -81,42 +96,48 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& opti
 Result<int> run(const Options& options, const Command& command) {
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
-  GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options));
+  const std::optional<LayerOrigin> origin = picture_origin(header, options);
+  GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options, origin));
   UnrollOptions unroll_options;
   unroll_options.memory_bytes = command.memory_bytes();
   unroll_options.cancel = &cancel_token();  // before there is a temporary file: from here on Ctrl-C takes it away again
   GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(options.output, page));
   std::vector<std::byte> inverted;
-  GRAVURE_CHECK(unroll(
-      *program, emulated_devices(), options.revolution,
-      [&](std::span<const std::byte> rows, std::int64_t) {
-        if (!page.zero_is_white) {
-          return writer.append_rows(rows);
-        }
-        inverted.assign(rows.begin(), rows.end());
-        for (std::byte& byte : inverted) {
-          byte = ~byte;
-        }
-        return writer.append_rows(inverted);
-      },
-      unroll_options));
+  const RowSink sink = [&](std::span<const std::byte> rows, std::int64_t) {
+    if (!page.zero_is_white) {
+      return writer.append_rows(rows);
+    }
+    inverted.assign(rows.begin(), rows.end());
+    for (std::byte& byte : inverted) {
+      byte = ~byte;
+    }
+    return writer.append_rows(inverted);
+  };
+  GRAVURE_CHECK(options.layer ? unroll_layer(*program, emulated_devices(), *options.layer, sink, unroll_options)
+                              : unroll(*program, emulated_devices(), *options.revolution, sink, unroll_options));
   GRAVURE_CHECK(writer.commit());
-  const std::uint32_t layer = header.layer_of_revolution[static_cast<std::size_t>(options.revolution)];
-  const SourceImage& source = header.sources[static_cast<std::size_t>(header.layers[layer].source)];
+  const SourceImage& source = header.sources[origin->source];
   if (command.json) {
-    print_json({{"picture", options.output},
-                {"revolution", options.revolution},
-                {"layer", layer},
-                {"source", source.path},
-                {"page", source.page},
-                {"level", header.layers[layer].level},
-                {"width", page.width},
-                {"height", page.height},
-                {"fires", polarity_name(header.fires)}});
+    Json json = {{"picture", options.output}};
+    if (options.revolution) {
+      json["revolution"] = *options.revolution;
+      json["layer"] = header.layer_of_revolution[static_cast<std::size_t>(*options.revolution)];
+    } else {
+      json["layer"] = *options.layer;
+    }
+    json["source"] = source.path;
+    json["page"] = source.page;
+    json["level"] = origin->level;
+    json["width"] = page.width;
+    json["height"] = page.height;
+    json["fires"] = polarity_name(header.fires);
+    print_json(json);
   } else {
-    print(fmt::format("{}: revolution {} as exposed, {} x {}, {} fires; its layer is {} page {} level {}\n",
-                      options.output, options.revolution, page.width, page.height, polarity_name(header.fires),
-                      source.path, source.page, header.layers[layer].level));
+    const std::string what =
+        options.layer ? fmt::format("layer {}", *options.layer) : fmt::format("revolution {}", *options.revolution);
+    print(fmt::format("{}: {} as exposed, {} x {}, {} fires; its {} is {} page {} level {}\n", options.output, what,
+                      page.width, page.height, polarity_name(header.fires), options.layer ? "image" : "layer",
+                      source.path, source.page, origin->level));
   }
   return kDone;
 }
@@ -124,11 +145,15 @@ Result<int> run(const Options& options, const Command& command) {
 }  // namespace
 
 void add_unroll(CLI::App& app, Command& command) {
-  CLI::App* verb = add_verb(app, command, "unroll", "What one revolution exposes, as the picture it came from");
+  CLI::App* verb =
+      add_verb(app, command, "unroll", "What one revolution or layer exposes, as the picture it came from");
   const auto options = std::make_shared<Options>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
-  verb->add_option("--revolution", options->revolution, "Revolution, from 0")
-      ->required()
+  CLI::Option* revolution =
+      verb->add_option("--revolution", options->revolution, "Revolution (flat: pass), from 0; not in helical programs")
+          ->check(integer_from(0, kMostIndex));
+  verb->add_option("--layer", options->layer, "Layer of the image stack, from 0, whatever revolutions expose it")
+      ->excludes(revolution)
       ->check(integer_from(0, kMostIndex));
   verb->add_option("-o,--output", options->output, "Bilevel TIFF to write")->required();
   verb->add_option("--compression", options->compression,
@@ -136,7 +161,12 @@ void add_unroll(CLI::App& app, Command& command) {
       ->check(CLI::IsMember({"source", "none", "packbits", "lzw", "deflate", "g4"}))
       ->capture_default_str();
   add_work_options(*verb, command);
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback([&command, options] {
+    if (!options->revolution && !options->layer) {
+      throw CLI::RequiredError("--revolution or --layer");
+    }
+    command.run = [&command, options] { return run(*options, command); };
+  });
 }
 
 }  // namespace gravure::cli

@@ -13,7 +13,9 @@
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/job_file.hpp"
 #include "gravure/formats/plan_json.hpp"
+#include "gravure/pipeline/window_reader.hpp"
 #include "gravure/sync/make_plan.hpp"
+#include "gravure/twin/unroll.hpp"
 #include "gravure/twin/verify.hpp"
 #include "job_loader.hpp"
 #include "program_files.hpp"
@@ -32,10 +34,9 @@ struct Options {
 
 /// The first revolution that does not expose the layer its job asks for.
 std::optional<std::int64_t> wrong_layer(const ProgramHeader& header, LayerOrder order) {
-  const auto layers = static_cast<std::int64_t>(header.layers.size());
+  StoredLayers stored(header.plan, order, image_layers(header));
   for (std::int64_t r = 0; r < header.plan.job.revolutions; ++r) {
-    // Layers are stored in the order in which they are first used, so their numbers are those of the order itself.
-    if (layer_of_revolution(order, layers, r) != header.layer_of_revolution[static_cast<std::size_t>(r)]) {
+    if (stored.number(r) != header.layer_of_revolution[static_cast<std::size_t>(r)]) {
       return r;
     }
   }
@@ -45,7 +46,9 @@ std::optional<std::int64_t> wrong_layer(const ProgramHeader& header, LayerOrder 
 /// The job text in a program must lead to the very plan, and the order of layers, that stand in it.
 Result<std::optional<std::string>> plan_contradiction(const ProgramHeader& header) {
   GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));
-  GRAVURE_TRY(Plan again, make_plan(job, header.plan.line.pixels, header.plan.job.revolutions));
+  const std::int64_t exposures =
+      header.plan.carriage ? header.plan.carriage->layers : revolutions_per_band(header.plan);
+  GRAVURE_TRY(Plan again, make_plan(job, image_columns(header.plan), exposures));
   again.warnings = header.plan.warnings;  // those about images are not made here
   if (plan_to_json(again) == plan_to_json(header.plan)) {
     const std::optional<std::int64_t> wrong = wrong_layer(header, job.image.order);
@@ -74,6 +77,15 @@ std::set<std::int64_t> shown_revolutions(std::int64_t revolutions, bool every) {
   return shown;
 }
 
+Json json_of(const CarriageReport& carriage) {
+  return {{"ab_step_um", carriage.ab_step_um},
+          {"max_error_um", carriage.error_max_um},
+          {"worst", {{"revolution", carriage.worst_revolution}, {"line", carriage.worst_line}}},
+          {"drift_um_per_revolution", carriage.drift_um_per_revolution},
+          {"accumulated_um", carriage.seam_end_um},
+          {"measured_end_um", carriage.seam_end_measured_um ? Json(*carriage.seam_end_measured_um) : Json(nullptr)}};
+}
+
 Json json_of(const VerifyReport& report, const ProgramHeader& header, bool every) {
   Json seam = Json::array();
   for (const std::int64_t r : shown_revolutions(report.revolutions, every)) {
@@ -88,37 +100,41 @@ Json json_of(const VerifyReport& report, const ProgramHeader& header, bool every
              {"line", report.first_wrong_pixel->line},
              {"column", report.first_wrong_pixel->column}};
   }
-  return {{"within_limits", report.violations.empty()},
-          {"violations", report.violations},
-          {"notes", report.notes},
-          {"revolutions", report.revolutions},
-          {"lines", report.lines},
-          {"ticks", json_integer(Integer(report.ticks))},
-          {"fires", polarity_name(header.fires)},
-          {"fired_pixels", json_integer(Integer(report.fired_pixels))},
-          {"pixels", json_integer(Integer(report.pixels))},
-          {"images_compared", report.images_compared},
-          {"uncompared_lines", report.uncompared_lines},
-          {"wrong_pixels", report.wrong_pixels},
-          {"first_wrong_pixel", wrong},
-          {"seam",
-           {{"limit_um", report.seam_limit_um},
-            {"max_um", report.seam_max_um},
-            {"worst", {{"revolution", report.seam_worst_revolution}, {"line", report.seam_worst_line}}},
-            {"accumulated_um", report.seam_end_um},
-            {"measured_end_um", report.seam_end_measured_um ? Json(*report.seam_end_measured_um) : Json(nullptr)},
-            {"drift_um_per_revolution", to_double(header.plan.ab.drift_um_per_revolution)},
-            {"revolutions", seam}}},
-          {"axis",
-           {{"ab_step_um", report.ab_step_um},
-            {"max_error_um", report.axis_error_max_um},
-            {"worst", {{"revolution", report.axis_worst_revolution}, {"line", report.axis_worst_line}}}}}};
+  Json json = {{"within_limits", report.violations.empty()},
+               {"violations", report.violations},
+               {"notes", report.notes},
+               {"revolutions", report.revolutions},
+               {"lines", report.lines},
+               {"ticks", json_integer(Integer(report.ticks))},
+               {"fires", polarity_name(header.fires)},
+               {"fired_pixels", json_integer(Integer(report.fired_pixels))},
+               {"pixels", json_integer(Integer(report.pixels))},
+               {"images_compared", report.images_compared},
+               {"uncompared_lines", report.uncompared_lines},
+               {"wrong_pixels", report.wrong_pixels},
+               {"first_wrong_pixel", wrong},
+               {"seam",
+                {{"limit_um", report.seam_limit_um},
+                 {"max_um", report.seam_max_um},
+                 {"worst", {{"revolution", report.seam_worst_revolution}, {"line", report.seam_worst_line}}},
+                 {"accumulated_um", report.seam_end_um},
+                 {"measured_end_um", report.seam_end_measured_um ? Json(*report.seam_end_measured_um) : Json(nullptr)},
+                 {"drift_um_per_revolution", to_double(header.plan.ab.drift_um_per_revolution)},
+                 {"revolutions", seam}}},
+               {"axis",
+                {{"ab_step_um", report.ab_step_um},
+                 {"max_error_um", report.axis_error_max_um},
+                 {"worst", {{"revolution", report.axis_worst_revolution}, {"line", report.axis_worst_line}}}}}};
+  if (report.carriage) {
+    json["carriage"] = json_of(*report.carriage);
+  }
+  return json;
 }
 
 std::string text_of(const VerifyReport& report, const ProgramHeader& header, bool every) {
   std::string text =
-      fmt::format("{} revolutions, {} lines, {} ticks emulated; {} fires: {} of {} pixels ({:.2f} %)\n",
-                  report.revolutions, report.lines, report.ticks, polarity_name(header.fires), report.fired_pixels,
+      fmt::format("{} {}, {} lines, {} ticks emulated; {} fires: {} of {} pixels ({:.2f} %)\n", report.revolutions,
+                  turns_name(header.plan), report.lines, report.ticks, polarity_name(header.fires), report.fired_pixels,
                   report.pixels, 100.0 * static_cast<double>(report.fired_pixels) / static_cast<double>(report.pixels));
   if (report.images_compared) {
     text += fmt::format("landed pixels that differ from the images: {}\n", report.wrong_pixels);
@@ -137,6 +153,12 @@ std::string text_of(const VerifyReport& report, const ProgramHeader& header, boo
     text += fmt::format("axis after the last line, as the device counts its edges: {:+.6g} um\n",
                         *report.seam_end_measured_um);
   }
+  if (report.carriage) {
+    text += fmt::format(
+        "carriage: one A-B edge is {:.6g} um; at most {:.6g} um off (revolution {}, line {}); accumulated {:+.6g} um\n",
+        report.carriage->ab_step_um, report.carriage->error_max_um, report.carriage->worst_revolution,
+        report.carriage->worst_line, report.carriage->seam_end_um);
+  }
   for (const std::string& note : report.notes) {
     text += "note: " + note + "\n";
   }
@@ -148,17 +170,15 @@ std::string text_of(const VerifyReport& report, const ProgramHeader& header, boo
 }
 
 /// Says of differing images whether the files are the ones that were compiled.
-void note_changed_sources(const ProgramHeader& header, const LayerStack& stack, VerifyReport& report) {
+void note_changed_sources(const ProgramHeader& header, const std::vector<std::string>& paths, VerifyReport& report) {
   std::set<std::string> seen;
-  for (std::size_t layer = 0; layer < header.layers.size(); ++layer) {
-    const SourceImage& source = header.sources[static_cast<std::size_t>(header.layers[layer].source)];
-    const std::string& path = stack.layers[layer].path;
-    if (!seen.insert(path).second) {
+  for (std::size_t source = 0; source < header.sources.size(); ++source) {
+    if (!seen.insert(paths[source]).second) {
       continue;
     }
-    const Result<std::string> now = sha256_file(path);
-    if (now && now.value() != source.sha256) {  // one that is not there is a violation of its own
-      report.notes.push_back(path + " is not the file that was compiled (other SHA-256)");
+    const Result<std::string> now = sha256_file(paths[source]);
+    if (now && now.value() != header.sources[source].sha256) {  // one that is not there is a violation of its own
+      report.notes.push_back(paths[source] + " is not the file that was compiled (other SHA-256)");
     }
   }
 }
@@ -173,7 +193,7 @@ Result<int> verify_program(const std::string& path, const Options& options, cons
   const std::int64_t panel = command.memory_bytes() / 4;
   if (found.stack) {
     readers = [&]() -> Result<std::unique_ptr<LayerLines>> {
-      return std::unique_ptr<LayerLines>(std::make_unique<LayerReader>(*found.stack, files, panel));
+      return make_layer_lines(header, *found.stack, files, panel);
     };
   }
   Result<VerifyReport> verified = [&] {
@@ -193,7 +213,7 @@ Result<int> verify_program(const std::string& path, const Options& options, cons
     report.notes.push_back("image not found: " + missing);
   }
   if (found.stack && (report.wrong_pixels > 0 || report.uncompared_lines > 0)) {
-    note_changed_sources(header, *found.stack, report);
+    note_changed_sources(header, found.paths, report);
   }
   if (report.ab_step_um > report.seam_limit_um) {
     report.notes.push_back(

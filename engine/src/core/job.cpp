@@ -2,6 +2,18 @@
 
 namespace gravure {
 
+std::string_view mode_name(Mode mode) {
+  switch (mode) {
+    case Mode::rotary:
+      return "rotary";
+    case Mode::helical:
+      return "helical";
+    case Mode::flat:
+      return "flat";
+  }
+  return "";
+}
+
 std::string Job::place_of(std::string_view key) const {
   auto found = places.find(key);
   if (found == places.end()) {

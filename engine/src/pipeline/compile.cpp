@@ -10,6 +10,7 @@
 #include <system_error>
 #include <thread>
 
+#include "gravure/pipeline/window_reader.hpp"
 #include "gravure/raster/place.hpp"
 #include "ordered_writer.hpp"
 
@@ -33,31 +34,32 @@ struct Geometry {
   std::int64_t lines_of(std::int64_t chunk) const { return std::min(lines_per_chunk, lines - chunk * lines_per_chunk); }
 };
 
-/// A depth map is walked chunk by chunk, all its layers at once, so that it is decoded once; a stack layer by layer.
+/// A depth map is walked chunk by chunk, all its layers at once, so that it is decoded once, and so are helical
+/// revolutions, which share their images; a stack layer by layer.
 /// Files that only read forwards, and panels of columns, keep as many chunks together as one pass over the file yields.
 /// The order in which chunks are written follows from the images alone, never from the budget or the number of workers.
 class TaskList {
  public:
-  TaskList(const LayerStack& stack, const Geometry& geometry, std::int64_t lines_per_pass)
-      : geometry_(geometry), depth_map_(stack.levels > 0) {
+  TaskList(const Plan& plan, const LayerStack& stack, const Geometry& geometry, std::int64_t lines_per_pass)
+      : geometry_(geometry), by_chunks_(stack.levels > 0 || plan.carriage) {
     const std::int64_t all = geometry.chunks_per_layer();
     // A panel starts at a whole byte, up to 7 lines before the first one asked for.
     const std::int64_t fit = stack.lines_along == LinesAlong::columns ? lines_per_pass - 7 : lines_per_pass;
     group_ = lines_per_pass >= geometry.lines ? all : std::clamp<std::int64_t>(fit / geometry.lines_per_chunk, 1, all);
-    group_ = depth_map_ ? 1 : group_;
+    group_ = by_chunks_ ? 1 : group_;
     groups_ = (all + group_ - 1) / group_;
   }
-  std::int64_t size() const { return depth_map_ ? groups_ : groups_ * geometry_.layers; }
+  std::int64_t size() const { return by_chunks_ ? groups_ : groups_ * geometry_.layers; }
   Task at(std::int64_t ticket) const {
-    const std::int64_t group = depth_map_ ? ticket : ticket % groups_;
+    const std::int64_t group = by_chunks_ ? ticket : ticket % groups_;
     const std::int64_t first = group * group_;
     const std::int64_t chunks = std::min(group_, geometry_.chunks_per_layer() - first);
-    return depth_map_ ? Task{0, geometry_.layers, first, chunks} : Task{ticket / groups_, 1, first, chunks};
+    return by_chunks_ ? Task{0, geometry_.layers, first, chunks} : Task{ticket / groups_, 1, first, chunks};
   }
 
  private:
   Geometry geometry_;
-  bool depth_map_;
+  bool by_chunks_;
   std::int64_t group_;
   std::int64_t groups_;
 };
@@ -65,23 +67,22 @@ class TaskList {
 constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 
 /// Everything one worker holds beside its panel and what waits in the writer.
-std::int64_t worker_bytes(const LayerStack& stack, std::int64_t lines_per_chunk) {
-  const std::int64_t chunk = lines_per_chunk * row_bytes(SampleType::bit, stack.pixels);
+std::int64_t worker_bytes(const ReaderNeeds& needs, std::int64_t lines_per_chunk) {
   constexpr std::int64_t kCodec = 3 * kMiB;  // what packs a chunk, and the thread itself
-  return 4 * chunk + kCodec + LayerReader::fixed_bytes(stack, lines_per_chunk);  // as read, placed, packed twice
+  return 4 * lines_per_chunk * needs.line_bytes + kCodec + needs.fixed_bytes;  // as read, placed, packed twice
 }
 
 /// What a worker must have: its panel is three quarters of what it has to spare.
-std::int64_t least_worker_bytes(const LayerStack& stack, std::int64_t lines_per_chunk) {
-  return worker_bytes(stack, lines_per_chunk) + LayerReader::least_panel_bytes(stack) * 4 / 3;
+std::int64_t least_worker_bytes(const ReaderNeeds& needs, std::int64_t lines_per_chunk) {
+  return worker_bytes(needs, lines_per_chunk) + needs.least_panel_bytes * 4 / 3;
 }
 
 /// What the program takes once, whoever writes it: the tables of its chunks, the library of its format.
-std::int64_t program_bytes(const LayerStack& stack, std::int64_t lines_per_chunk) {
+std::int64_t program_bytes(std::int64_t layers, std::int64_t lines, std::int64_t lines_per_chunk) {
   constexpr std::int64_t kLibrary = 2 * kMiB;
   constexpr std::int64_t kTablesPerChunk = 64;
-  const std::int64_t chunks = (stack.lines + lines_per_chunk - 1) / std::max<std::int64_t>(1, lines_per_chunk);
-  return kLibrary + kTablesPerChunk * chunks * static_cast<std::int64_t>(stack.layers.size());
+  const std::int64_t chunks = (lines + lines_per_chunk - 1) / std::max<std::int64_t>(1, lines_per_chunk);
+  return kLibrary + kTablesPerChunk * chunks * layers;
 }
 
 struct Budget {
@@ -94,8 +95,11 @@ std::string whole_mib(std::int64_t bytes) {
   return std::to_string((bytes + kMiB - 1) / kMiB) + " MiB";
 }
 
-Result<Budget> divide_budget(const LayerStack& stack, const Geometry& geometry, const CompileOptions& options) {
-  const std::int64_t least = least_compile_memory(stack, geometry.lines_per_chunk);
+Result<Budget> divide_budget(const Plan& plan, const LayerStack& stack, const Geometry& geometry,
+                             const CompileOptions& options) {
+  const ReaderNeeds needs = reader_needs(plan, stack, geometry.lines_per_chunk);
+  const std::int64_t once = program_bytes(geometry.layers, geometry.lines, geometry.lines_per_chunk);
+  const std::int64_t least = once + least_worker_bytes(needs, geometry.lines_per_chunk);
   if (options.memory_bytes < least) {
     const std::int64_t decoder = stack.decoder_bytes.value_or(0);
     std::string remedy = ": raise --memory";
@@ -108,11 +112,11 @@ Result<Budget> divide_budget(const LayerStack& stack, const Geometry& geometry, 
                                               " MiB: these images need at least " + whole_mib(least) + remedy};
   }
   const int wanted = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const std::int64_t workers_bytes = options.memory_bytes - program_bytes(stack, geometry.lines_per_chunk);
-  const std::int64_t fit = workers_bytes / least_worker_bytes(stack, geometry.lines_per_chunk);
+  const std::int64_t workers_bytes = options.memory_bytes - once;
+  const std::int64_t fit = workers_bytes / least_worker_bytes(needs, geometry.lines_per_chunk);
   Budget budget{};
   budget.threads = static_cast<int>(std::clamp<std::int64_t>(wanted, 1, fit));
-  const std::int64_t spare = workers_bytes - budget.threads * worker_bytes(stack, geometry.lines_per_chunk);
+  const std::int64_t spare = workers_bytes - budget.threads * worker_bytes(needs, geometry.lines_per_chunk);
   budget.ahead_bytes = spare / 4;
   budget.panel_bytes = (spare - budget.ahead_bytes) / budget.threads;
   return budget;
@@ -129,7 +133,7 @@ class Compiler {
         options_(options),
         geometry_(geometry),
         budget_(budget),
-        tasks_(stack, geometry, LayerReader::lines_per_pass(stack, budget.panel_bytes)),
+        tasks_(header.plan, stack, geometry, LayerReader::lines_per_pass(stack, budget.panel_bytes)),
         writer_(sink, budget.ahead_bytes) {}
 
   Result<void> run() {
@@ -161,19 +165,19 @@ class Compiler {
   }
 
   void work_on_tickets() {
-    LayerReader reader(stack_, opener_, budget_.panel_bytes);
+    const std::unique_ptr<LayerLines> reader = make_layer_lines(header_, stack_, opener_, budget_.panel_bytes);
     const std::size_t bytes = static_cast<std::size_t>(geometry_.lines_per_chunk * geometry_.line_bytes);
     std::vector<std::byte> read(bytes);
     std::vector<std::byte> placed(bytes);
     while (true) {
       const std::int64_t ticket = next_.fetch_add(1);
-      if (ticket >= tasks_.size() || !run_task(tasks_.at(ticket), ticket, reader, read, placed)) {
+      if (ticket >= tasks_.size() || !run_task(tasks_.at(ticket), ticket, *reader, read, placed)) {
         return;
       }
     }
   }
 
-  bool run_task(const Task& task, std::int64_t ticket, LayerReader& reader, std::span<std::byte> read,
+  bool run_task(const Task& task, std::int64_t ticket, LayerLines& reader, std::span<std::byte> read,
                 std::span<std::byte> placed) {
     for (std::int64_t chunk = task.first_chunk; chunk < task.first_chunk + task.chunks; ++chunk) {
       for (std::int64_t layer = task.first_layer; layer < task.first_layer + task.layers; ++layer) {
@@ -195,7 +199,7 @@ class Compiler {
     return writer_.close(ticket);
   }
 
-  Result<StoredChunk> make_chunk(ChunkAddress address, LayerReader& reader, std::span<std::byte> read,
+  Result<StoredChunk> make_chunk(ChunkAddress address, LayerLines& reader, std::span<std::byte> read,
                                  std::span<std::byte> placed) {
     const std::int64_t first = address.chunk * geometry_.lines_per_chunk;
     const std::int64_t lines = geometry_.lines_of(address.chunk);
@@ -203,7 +207,7 @@ class Compiler {
     GRAVURE_TRY(const bool invert, reader.read_lines(address.layer, first, lines, read.first(bytes)));
     const bool bidirectional = header_.plan.line.bidirectional;
     const bool starts_reverse = header_.layers[static_cast<std::size_t>(address.layer)].starts_reverse;
-    raster::place_rows(placed.first(bytes), read.first(bytes), stack_.pixels, lines,
+    raster::place_rows(placed.first(bytes), read.first(bytes), header_.plan.line.pixels, lines,
                        {.invert = invert,
                         .first_mirrored = bidirectional && (starts_reverse != ((first & 1) != 0)),
                         .alternate = bidirectional});
@@ -236,7 +240,9 @@ class Compiler {
 }  // namespace
 
 std::int64_t least_compile_memory(const LayerStack& stack, std::int64_t lines_per_chunk) {
-  return program_bytes(stack, lines_per_chunk) + least_worker_bytes(stack, lines_per_chunk);
+  const ReaderNeeds needs = reader_needs(Plan{}, stack, lines_per_chunk);
+  return program_bytes(static_cast<std::int64_t>(stack.layers.size()), stack.lines, lines_per_chunk) +
+         least_worker_bytes(needs, lines_per_chunk);
 }
 
 Result<ProgramHeader> compile(ProgramHeader header, const LayerStack& given, const ImageOpener& opener, LineSink& sink,
@@ -247,9 +253,9 @@ Result<ProgramHeader> compile(ProgramHeader header, const LayerStack& given, con
     stack.samples = given.samples;  // what the plan was made with; a file that differs now is refused when it is read
     stack.random_access = given.random_access;
   }
-  const Geometry geometry{static_cast<std::int64_t>(stack.layers.size()), stack.lines, header.line_bytes(),
+  const Geometry geometry{static_cast<std::int64_t>(header.layers.size()), stack.lines, header.line_bytes(),
                           sink.lines_per_chunk()};
-  GRAVURE_TRY(const Budget budget, divide_budget(stack, geometry, options));
+  GRAVURE_TRY(const Budget budget, divide_budget(header.plan, stack, geometry, options));
   for (StoredLayer& layer : header.layers) {
     layer.fired_pixels = 0;
   }

@@ -28,6 +28,9 @@ void check_scanner(const ScannerSettings& scanner, Violations& violations) {
   violations.check_range("scanner.slots_per_microvector", scanner.slots_per_microvector, 1, kMostCount);
   violations.check_range("scanner.turn_slots", scanner.turn_slots, 0, kMostTurnSlots);
   violations.check_range("scanner.max_extra_slots", scanner.max_extra_slots, 0, kMostExtraSlots);
+  if (scanner.field_mm) {
+    violations.check_positive("scanner.field_mm", *scanner.field_mm, kMostMillimetres);
+  }
 }
 
 /// Exactly one of two keys; says which, if not.
@@ -62,6 +65,25 @@ void check_workpiece(const RotarySettings& rotary, Violations& violations) {
   }
 }
 
+void check_linear_axis(const std::string& section, const Rational& encoder_pitch_um, int interpolation_bits,
+                       std::int64_t max_ab_hz, Violations& violations) {
+  violations.check_positive(section + ".encoder_pitch_um", encoder_pitch_um, kMostMicrometres);
+  violations.check_range(section + ".interpolation_bits", interpolation_bits, 0, kMostInterpolationBits);
+  violations.check_range(section + ".max_ab_hz", max_ab_hz, 1, kMostHz);
+}
+
+void check_carriage(const CarriageSettings& carriage, Violations& violations) {
+  violations.check_positive("carriage.feed_pixels", carriage.feed_pixels, kMostCount);
+  violations.check_range("carriage.layers", carriage.layers, 1, kMostRevolutions / 2);
+  check_linear_axis("carriage", carriage.encoder_pitch_um, carriage.interpolation_bits, carriage.max_ab_hz, violations);
+}
+
+void check_stage(const StageSettings& stage, Violations& violations) {
+  violations.check_range("stage.lines", stage.lines, 1, kMostCount);
+  violations.check_positive("stage.line_pitch_um", stage.line_pitch_um, kMostMicrometres);
+  check_linear_axis("stage", stage.encoder_pitch_um, stage.interpolation_bits, stage.max_ab_hz, violations);
+}
+
 void check_axis(const RotarySettings& rotary, Violations& violations) {
   violations.check_range("rotary.encoder_lines", rotary.encoder_lines, 1, kMostCount);
   violations.check_range("rotary.interpolation_bits", rotary.interpolation_bits, 0, kMostInterpolationBits);
@@ -78,13 +100,20 @@ void check_axis(const RotarySettings& rotary, Violations& violations) {
 
 }  // namespace
 
-void check_fields(const Job& job, std::int64_t pixels_per_line, std::int64_t revolutions, Violations& violations) {
+void check_fields(const Job& job, std::int64_t columns, std::int64_t exposures, Violations& violations) {
   check_clocks(job, violations);
   check_scanner(job.scanner, violations);
-  check_workpiece(job.rotary, violations);
-  check_axis(job.rotary, violations);
-  violations.check_range("image.pixels_per_line", pixels_per_line, 1, kMostCount);
-  violations.check_range("image.revolutions", revolutions, 1, std::numeric_limits<std::int64_t>::max());
+  if (job.mode == Mode::flat) {
+    check_stage(job.stage, violations);
+  } else {
+    check_workpiece(job.rotary, violations);
+    check_axis(job.rotary, violations);
+  }
+  if (job.mode == Mode::helical) {
+    check_carriage(job.carriage, violations);
+  }
+  violations.check_range("image.pixels_per_line", columns, 1, kMostCount);
+  violations.check_range("image.revolutions", exposures, 1, std::numeric_limits<std::int64_t>::max());
   violations.check_positive("limits.seam_um", job.limits.seam_um, kMostMicrometres);
 }
 

@@ -12,8 +12,10 @@ inline constexpr std::int64_t kMostCount = 1'000'000'000;
 /// Each candidate costs a best pair of some microseconds.
 inline constexpr std::int64_t kMostTurnSlots = 10'000'000;
 inline constexpr std::int64_t kMostExtraSlots = 100'000;
+/// Revolutions that the plan counts by itself: of a helical job, of all bands together.
+inline constexpr std::int64_t kMostRevolutions = 1'000'000;
 
 /// Refuses values no plan can be computed from, each by itself, and keys that exclude each other.
-void check_fields(const Job& job, std::int64_t pixels_per_line, std::int64_t revolutions, Violations& violations);
+void check_fields(const Job& job, std::int64_t columns, std::int64_t exposures, Violations& violations);
 
 }  // namespace gravure::sync_plan

@@ -5,13 +5,13 @@
 namespace gravure::sync_plan {
 namespace {
 
-void warn_drift(const Plan& plan, std::vector<std::string>& warnings) {
-  const AbPlan& ab = plan.ab;
-  const Rational drift_um = ab.drift_um_per_revolution * Rational(plan.job.revolutions);
+/// `revolutions` are those over which the drift adds up.
+void warn_drift(const AbPlan& ab, const char* axis, std::int64_t revolutions, std::vector<std::string>& warnings) {
+  const Rational drift_um = ab.drift_um_per_revolution * Rational(revolutions);
   if (abs(drift_um) <= ab.seam_limit_um) {
     return;
   }
-  warnings.push_back("after " + std::to_string(plan.job.revolutions) + " revolutions the axis " +
+  warnings.push_back("after " + std::to_string(revolutions) + " revolutions the " + axis + " " +
                      (drift_um > 0 ? "leads" : "lags") + " by " + number_text(abs(drift_um)) +
                      " um, more than limits.seam_um = " + number_text(ab.seam_limit_um) + "; reached after " +
                      to_string(*ab.lines_until_limit) + " lines, in revolution " +
@@ -21,7 +21,7 @@ void warn_drift(const Plan& plan, std::vector<std::string>& warnings) {
 }
 
 void warn_pitch(const Job& job, const Plan& plan, std::vector<std::string>& warnings) {
-  if (!job.rotary.line_pitch_um) {
+  if (plan.mode == Mode::flat || !job.rotary.line_pitch_um) {
     return;
   }
   const Rational& wanted = *job.rotary.line_pitch_um;
@@ -35,7 +35,7 @@ void warn_pitch(const Job& job, const Plan& plan, std::vector<std::string>& warn
 }
 
 void warn_directions(const Job& job, const Plan& plan, std::vector<std::string>& warnings) {
-  if (plan.line.bidirectional && plan.rotary.lines_per_revolution % 2 != 0) {
+  if (plan.mode != Mode::flat && plan.line.bidirectional && plan.rotary.lines_per_revolution % 2 != 0) {
     warnings.push_back("lines per revolution = " + std::to_string(plan.rotary.lines_per_revolution) +
                        " is odd and the scanner marks both ways: the same line of the next revolution runs the other "
                        "way (harmless; an even number keeps its direction)");
@@ -50,12 +50,28 @@ void warn_directions(const Job& job, const Plan& plan, std::vector<std::string>&
 void warn_encoder(const Plan& plan, std::vector<std::string>& warnings) {
   const RotaryPlan& rotary = plan.rotary;
   if (rotary.edges_per_revolution < Rational(rotary.lines_per_revolution)) {
-    warnings.push_back("the axis moves in steps of " +
-                       number_text(rotary.circumference_um / rotary.edges_per_revolution) +
-                       " um (one A-B edge), more than the line pitch of " + number_text(rotary.line_pitch_um) +
-                       " um: rotary.encoder_lines = " + std::to_string(rotary.encoder_lines) +
-                       " with rotary.interpolation_bits = " + std::to_string(rotary.interpolation_bits) +
-                       " is too coarse to place single lines");
+    const std::string encoder =
+        plan.mode == Mode::flat
+            ? "stage.encoder_pitch_um = " + number_text(rotary.encoder_pitch_um) + " with stage.interpolation_bits = "
+            : "rotary.encoder_lines = " + std::to_string(rotary.encoder_lines) + " with rotary.interpolation_bits = ";
+    warnings.push_back(
+        "the axis moves in steps of " + number_text(rotary.circumference_um / rotary.edges_per_revolution) +
+        " um (one A-B edge), more than the line pitch of " + number_text(rotary.line_pitch_um) + " um: " + encoder +
+        std::to_string(rotary.interpolation_bits) + " is too coarse to place single lines");
+  }
+}
+
+void warn_carriage(const Plan& plan, std::vector<std::string>& warnings) {
+  const CarriagePlan& carriage = *plan.carriage;
+  warn_drift(carriage.ab, "carriage", plan.job.revolutions, warnings);
+  const Rational step_um = carriage.feed_um / carriage.edges_per_revolution;
+  if (step_um > plan.line.pixel_pitch_um) {
+    warnings.push_back(
+        "the carriage moves in steps of " + number_text(step_um) +
+        " um (one A-B edge), more than scanner.pixel_pitch_um = " + number_text(plan.line.pixel_pitch_um) +
+        ": carriage.encoder_pitch_um = " + number_text(carriage.encoder_pitch_um) +
+        " with carriage.interpolation_bits = " + std::to_string(carriage.interpolation_bits) +
+        " is too coarse to place single columns");
   }
 }
 
@@ -63,10 +79,14 @@ void warn_encoder(const Plan& plan, std::vector<std::string>& warnings) {
 
 std::vector<std::string> plan_warnings(const Job& job, const Plan& plan) {
   std::vector<std::string> warnings;
-  warn_drift(plan, warnings);
+  // A stage does not add up over passes: each starts where the one before ended.
+  warn_drift(plan.ab, "axis", plan.mode == Mode::flat ? 1 : plan.job.revolutions, warnings);
   warn_pitch(job, plan, warnings);
   warn_directions(job, plan, warnings);
   warn_encoder(plan, warnings);
+  if (plan.carriage) {
+    warn_carriage(plan, warnings);
+  }
   return warnings;
 }
 

@@ -22,6 +22,9 @@ std::int64_t layer_of_revolution(LayerOrder order, std::int64_t layers, std::int
 
 Result<std::int64_t> resolve_revolutions(const Job& job, std::optional<std::int64_t> layers) {
   const ImageSettings& image = job.image;
+  if (job.mode == Mode::helical && !layers && !image.depth_map) {
+    return job.carriage.layers;
+  }
   if (!layers && image.depth_map) {
     layers = image.levels;
   }

@@ -10,14 +10,6 @@ Rational counts_per_step(const AbPlan& ab) {
   return Rational(ab.increment) + Rational(Integer(ab.fraction_num), Integer(ab.fraction_den));
 }
 
-/// Counts a line by the registers, over the counts it needs: what the counter gains.
-Rational drift_of(const Plan& plan) {
-  const Rational counts_per_line = counts_per_step(plan.ab) * plan.line.ticks / Rational(Integer(plan.ab.prescaler));
-  const Rational edges_per_line = plan.rotary.edges_per_revolution / plan.rotary.lines_per_revolution;
-  const Rational wanted = edges_per_line * Rational(Integer(Integer(1) << (plan.ab.counter_bits - 2)));
-  return counts_per_line / wanted - 1;
-}
-
 Rational lag_of(const AbPlan& ab) {
   const Integer edge = Integer(1) << static_cast<unsigned>(ab.counter_bits - 2);
   const Rational waiting = counts_per_step(ab) * ratio(Integer(ab.prescaler) - 1, Integer(ab.prescaler));
@@ -27,21 +19,45 @@ Rational lag_of(const AbPlan& ab) {
 
 }  // namespace
 
+/// What an axis is to do.
+struct AxisCheck::Demand {
+  const char* name;
+  const AbPlan& ab;
+  Rational edges_per_revolution;
+  Rational travel_um;         ///< in a revolution
+  Rational largest_drift_um;  ///< from this on what is marked is in another's place
+  bool starts_again = false;  ///< with every revolution
+};
+
 Result<AxisCheck> AxisCheck::make(const Plan& plan) {
-  const AbPlan& ab = plan.ab;
+  return make(plan, {"axis", plan.ab, plan.rotary.edges_per_revolution, plan.rotary.circumference_um,
+                     plan.rotary.line_pitch_um / 2, plan.mode == Mode::flat});
+}
+
+Result<AxisCheck> AxisCheck::make_carriage(const Plan& plan) {
+  const CarriagePlan& carriage = *plan.carriage;
+  return make(plan,
+              {"carriage", carriage.ab, carriage.edges_per_revolution, carriage.feed_um, plan.line.pixel_pitch_um / 2});
+}
+
+Result<AxisCheck> AxisCheck::make(const Plan& plan, const Demand& demand) {
+  const AbPlan& ab = demand.ab;
   if (ab.counter_bits < 3 || ab.counter_bits > 64 || ab.prescaler == 0 || ab.fraction_den == 0) {
     return Error{ErrorCode::out_of_range,
                  "the program's A-B registers: counter_bits = " + std::to_string(ab.counter_bits) +
                      " (3 to 64), prescaler = " + std::to_string(ab.prescaler) +
                      " and fraction_den = " + std::to_string(ab.fraction_den) + " (1 or more): compile it again"};
   }
-  const Rational edges = plan.rotary.edges_per_revolution / plan.rotary.lines_per_revolution;
+  const Rational edges = demand.edges_per_revolution / plan.rotary.lines_per_revolution;
   constexpr std::int64_t kMost = std::int64_t{1} << 62;
   if (edges <= 0 || numerator_of(edges) > kMost || denominator_of(edges) > kMost) {
     return Error{ErrorCode::out_of_range,
-                 "rotary: " + to_string(edges) + " A-B edges a line are beyond 62-bit integers"};
+                 std::string(demand.name) + ": " + to_string(edges) + " A-B edges a line are beyond 62-bit integers"};
   }
   AxisCheck check;
+  check.name_ = demand.name;
+  check.lines_per_start_ = demand.starts_again ? plan.rotary.lines_per_revolution : 0;
+  check.line_ticks_ = plan.line.ticks;
   check.edges_num_ = static_cast<std::int64_t>(numerator_of(edges));
   check.edges_den_ = static_cast<std::int64_t>(denominator_of(edges));
   check.counter_shift_ = static_cast<unsigned>(ab.counter_bits - 2);
@@ -50,13 +66,22 @@ Result<AxisCheck> AxisCheck::make(const Plan& plan) {
   check.fraction_num_ = ab.fraction_num;
   check.fraction_den_ = ab.fraction_den;
   check.largest_lag_edges_ = lag_of(ab);
-  check.step_um_ = to_double(Rational(plan.rotary.circumference_um / plan.rotary.edges_per_revolution));
-  check.drift_per_line_ = drift_of(plan);
+  check.step_um_ = to_double(Rational(demand.travel_um / demand.edges_per_revolution));
+  // Counts a line by the registers, over the counts it needs: what the counter gains.
+  const Rational counts_per_line = counts_per_step(ab) * plan.line.ticks / Rational(Integer(ab.prescaler));
+  check.drift_per_line_ = counts_per_line / (edges * Rational(Integer(Integer(1) << (ab.counter_bits - 2)))) - 1;
   if (check.drift_per_line_ != 0) {
-    const Integer first = ceil_of(Rational(Rational(1, 2) / abs(check.drift_per_line_)));
-    check.first_misplaced_line_ = fits_int64(first) ? static_cast<std::int64_t>(first) : -1;
+    const Rational travel_per_line_um = demand.travel_um / plan.rotary.lines_per_revolution;
+    const Integer first = ceil_of(Rational(demand.largest_drift_um / travel_per_line_um / abs(check.drift_per_line_)));
+    const bool reached = check.accumulates() || first <= plan.rotary.lines_per_revolution;
+    check.first_misplaced_line_ = reached && fits_int64(first) ? static_cast<std::int64_t>(first) : -1;
   }
   return check;
+}
+
+/// The line with which the motion that line `ordinal` belongs to starts.
+std::int64_t AxisCheck::start_of(std::int64_t ordinal) const noexcept {
+  return lines_per_start_ == 0 ? 0 : ordinal - ordinal % lines_per_start_;
 }
 
 std::uint64_t AxisCheck::register_edges(std::int64_t tick) const noexcept {
@@ -69,15 +94,27 @@ std::uint64_t AxisCheck::register_edges(std::int64_t tick) const noexcept {
 }
 
 Rational AxisCheck::exact_error_edges(std::int64_t ordinal, std::uint64_t edges) const {
-  return Rational(Integer(edges)) - ratio(Integer(ordinal) * edges_num_, edges_den_);
+  const std::int64_t start = start_of(ordinal - 1);  // an end belongs to the motion that it ends
+  return Rational(Integer(edges)) - Rational(Integer(register_edges(start * line_ticks_))) -
+         ratio(Integer(ordinal - start) * edges_num_, edges_den_);
 }
 
 double AxisCheck::error_edges(std::int64_t ordinal, const AxisState& axis) const {
-  const Wide ideal = static_cast<Wide>(ordinal) * edges_num_;
+  const std::int64_t start = start_of(ordinal);
+  const Wide ideal = static_cast<Wide>(ordinal - start) * edges_num_;
   const Wide whole = ideal / edges_den_;
   const Wide rest = ideal % edges_den_;
-  const Wide apart = static_cast<Wide>(axis.edges) - whole;
+  const Wide apart = static_cast<Wide>(axis.edges) - static_cast<Wide>(register_edges(start * line_ticks_)) - whole;
   return static_cast<double>(apart) - static_cast<double>(rest) / static_cast<double>(edges_den_);
+}
+
+Result<AxisChecks> AxisChecks::make(const Plan& plan) {
+  AxisChecks checks;
+  GRAVURE_TRY(checks.cross_scan, AxisCheck::make(plan));
+  if (plan.carriage) {
+    GRAVURE_TRY(checks.carriage, AxisCheck::make_carriage(plan));
+  }
+  return checks;
 }
 
 }  // namespace gravure

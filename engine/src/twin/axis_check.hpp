@@ -1,18 +1,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "gravure/core/device_link.hpp"
 #include "gravure/core/plan.hpp"
 
 namespace gravure {
 
-/// Holds the axis of the device against the turning the plan's geometry asks for: at line L of the job the axis must
-/// stand at L / nL revolutions, that is L * edges_per_revolution / nL A-B edges.
+/// Holds an axis of the device against the motion the plan's geometry asks for: at line L of the job it must stand at
+/// L / nL revolutions, that is L * edges_per_revolution / nL A-B edges. In flat mode each pass starts where the one
+/// before ended, so the same holds within a pass.
 class AxisCheck {
  public:
-  /// Fails with out_of_range when the edges of a line, as a ratio in lowest terms, are beyond 62-bit integers.
+  /// The axis across the lines. Fails with out_of_range when the edges of a line, as a ratio in lowest terms, are
+  /// beyond 62-bit integers.
   static Result<AxisCheck> make(const Plan& plan);
+  /// The carriage of a helical plan, likewise.
+  static Result<AxisCheck> make_carriage(const Plan& plan);
 
   /// Device minus ideal at a line start, in edges: whole edges exact, the ideal's part below one edge to 1e-15.
   double error_edges(std::int64_t ordinal, const AxisState& axis) const;
@@ -25,13 +30,25 @@ class AxisCheck {
   /// the part of a count that the fraction has not filled. The lag is below this.
   const Rational& largest_lag_edges() const noexcept { return largest_lag_edges_; }
   double step_um() const noexcept { return step_um_; }
+  /// Does the drift add up over the revolutions of the job?
+  bool accumulates() const noexcept { return lines_per_start_ == 0; }
+  /// "axis" or "carriage", for messages.
+  const char* name() const noexcept { return name_; }
 
   /// Drift of the counter alone, without its steps: exact, in lines per line. Positive: the axis leads.
   const Rational& drift_per_line() const noexcept { return drift_per_line_; }
-  /// From this line of the job on, the drift is half a line or more: the line lands on a neighbour's place. -1: never.
+  /// From this line of the job on, the drift is half a line (carriage: half a column) or more: what is marked lands on
+  /// a neighbour's place. -1: never.
   std::int64_t first_misplaced_line() const noexcept { return first_misplaced_line_; }
 
  private:
+  struct Demand;
+  static Result<AxisCheck> make(const Plan& plan, const Demand& demand);
+  std::int64_t start_of(std::int64_t ordinal) const noexcept;
+
+  const char* name_ = "axis";
+  std::int64_t lines_per_start_ = 0;  ///< flat: lines of a pass; else 0, it starts once
+  std::int64_t line_ticks_ = 0;
   std::int64_t edges_num_ = 0;  ///< ideal edges a line = num / den
   std::int64_t edges_den_ = 1;
   unsigned counter_shift_ = 0;  ///< n - 2
@@ -43,6 +60,14 @@ class AxisCheck {
   double step_um_ = 0;
   Rational drift_per_line_ = 0;
   std::int64_t first_misplaced_line_ = -1;
+};
+
+/// Both axes of a plan.
+struct AxisChecks {
+  AxisCheck cross_scan;
+  std::optional<AxisCheck> carriage;
+
+  static Result<AxisChecks> make(const Plan& plan);
 };
 
 }  // namespace gravure

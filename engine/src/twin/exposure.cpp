@@ -21,6 +21,10 @@ DeviceSetup device_setup(const Plan& plan, std::int64_t first_revolution, std::i
   setup.increment = plan.ab.increment;
   setup.fraction_num = plan.ab.fraction_num;
   setup.fraction_den = plan.ab.fraction_den;
+  if (plan.carriage) {
+    const AbPlan& carriage = plan.carriage->ab;
+    setup.carriage = {carriage.prescaler, carriage.increment, carriage.fraction_num, carriage.fraction_den};
+  }
   setup.ticks_per_slot = plan.clock.ticks_per_slot;
   setup.slots_per_line = plan.line.slots;
   setup.window_slots = plan.line.pixels;

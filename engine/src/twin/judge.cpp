@@ -13,6 +13,11 @@ std::string figure(double value) {
   return text;
 }
 
+/// Revolutions over which a drift adds up by the end of revolution `revolution`.
+std::int64_t drifting_revolutions(const AxisCheck& axis, std::int64_t revolution) {
+  return axis.accumulates() ? revolution + 1 : 1;
+}
+
 /// The seam after every revolution: the drift of the registers the device ran with, exact.
 void fill_seam(const Plan& plan, const AxisCheck& axis, VerifyReport& report) {
   const Rational per_revolution = axis.drift_per_line() * plan.rotary.lines_per_revolution;
@@ -20,7 +25,7 @@ void fill_seam(const Plan& plan, const AxisCheck& axis, VerifyReport& report) {
   for (std::int64_t r = 0; r < report.revolutions; ++r) {
     SeamRow row;
     row.revolution = r;
-    row.drift_lines = per_revolution * (r + 1);
+    row.drift_lines = per_revolution * drifting_revolutions(axis, r);
     row.drift_um = to_double(Rational(row.drift_lines * plan.rotary.line_pitch_um));
     report.seam.push_back(std::move(row));
   }
@@ -32,31 +37,59 @@ void fill_seam(const Plan& plan, const AxisCheck& axis, VerifyReport& report) {
   report.seam_limit_um = to_double(plan.ab.seam_limit_um);
 }
 
-/// Does the plan's own word on the drift agree with its registers, and with where the device's axis came to stand?
-void judge_drift(const Plan& plan, const AxisCheck& axis, const Tally& tally, VerifyReport& report) {
+/// Does a channel's own word on its drift agree with its registers, and with where the device's axis came to stand?
+/// Gives where that is against the ideal, in um.
+std::optional<double> judge_drift(const Plan& plan, const AbPlan& ab, const Rational& edges_per_revolution,
+                                  const AxisCheck& axis, const AxisTally& tally, VerifyReport& report) {
+  const std::string whose = axis.name() == std::string("axis") ? "" : std::string(axis.name()) + ": ";
   const Rational per_revolution = axis.drift_per_line() * plan.rotary.lines_per_revolution;
-  if (per_revolution != plan.ab.drift_lines_per_revolution) {
+  if (per_revolution != ab.drift_lines_per_revolution) {
     report.violations.push_back(
-        "the A-B registers (m = " + std::to_string(plan.ab.prescaler) +
-        ", increment = " + std::to_string(plan.ab.increment) + " + " + std::to_string(plan.ab.fraction_num) + "/" +
-        std::to_string(plan.ab.fraction_den) + ") drift by " + figure(to_double(per_revolution)) +
-        " lines per revolution, the plan says " + figure(to_double(plan.ab.drift_lines_per_revolution)) +
+        whose + "the A-B registers (m = " + std::to_string(ab.prescaler) +
+        ", increment = " + std::to_string(ab.increment) + " + " + std::to_string(ab.fraction_num) + "/" +
+        std::to_string(ab.fraction_den) + ") drift by " + figure(to_double(per_revolution)) +
+        " lines per revolution, the plan says " + figure(to_double(ab.drift_lines_per_revolution)) +
         ": they are not those of this geometry; compile the job again");
   }
   if (!tally.end_edges) {
-    return;  // the last line never ended, which is said
+    return std::nullopt;  // the last line never ended, which is said
   }
   const std::int64_t lines = plan.job.revolutions * plan.rotary.lines_per_revolution;
   const Rational measured = axis.exact_error_edges(lines, *tally.end_edges);
-  report.seam_end_measured_um = to_double(Rational(measured)) * axis.step_um();
-  const Rational drift = plan.ab.drift_lines_per_revolution * plan.job.revolutions * plan.rotary.edges_per_revolution /
-                         plan.rotary.lines_per_revolution;
-  if (measured > drift || drift - measured >= axis.largest_lag_edges()) {
-    report.violations.push_back("at the end of the last line the device's axis is " +
-                                figure(*report.seam_end_measured_um) + " um off, the plan's drift explains " +
-                                figure(to_double(drift) * axis.step_um()) + " um and less than " +
-                                figure(to_double(axis.largest_lag_edges()) * axis.step_um()) + " um of step behind it");
+  const double measured_um = to_double(Rational(measured)) * axis.step_um();
+  const Rational drift = ab.drift_lines_per_revolution * drifting_revolutions(axis, plan.job.revolutions - 1) *
+                         edges_per_revolution / plan.rotary.lines_per_revolution;
+  // Where a motion starts between two edges, the edge that began before belongs to it: one more or less.
+  const Rational begun = axis.accumulates() ? 0 : 1;
+  if (measured > drift + begun || drift - measured >= axis.largest_lag_edges()) {
+    report.violations.push_back(whose + "at the end of the last line the device's axis is " + figure(measured_um) +
+                                " um off, the plan's drift explains " + figure(to_double(drift) * axis.step_um()) +
+                                " um and less than " + figure(to_double(axis.largest_lag_edges()) * axis.step_um()) +
+                                " um of step behind it");
   }
+  return measured_um;
+}
+
+void judge_carriage(const Plan& plan, const AxisCheck& axis, const AxisTally& tally, VerifyReport& report) {
+  const CarriagePlan& carriage = *plan.carriage;
+  CarriageReport said;
+  said.ab_step_um = axis.step_um();
+  if (tally.worst_ordinal >= 0) {
+    said.error_max_um = std::fabs(tally.worst_edges) * axis.step_um();
+    said.worst_revolution = tally.worst_ordinal / plan.rotary.lines_per_revolution;
+    said.worst_line = tally.worst_ordinal % plan.rotary.lines_per_revolution;
+  }
+  const Rational end_um = axis.drift_per_line() * plan.job.revolutions * carriage.feed_um;
+  said.seam_end_um = to_double(end_um);
+  said.drift_um_per_revolution = to_double(Rational(axis.drift_per_line() * carriage.feed_um));
+  said.seam_end_measured_um = judge_drift(plan, carriage.ab, carriage.edges_per_revolution, axis, tally, report);
+  if (abs(end_um) > carriage.ab.seam_limit_um) {
+    report.violations.push_back("the carriage is " + figure(std::fabs(said.seam_end_um)) +
+                                " um off at the end of the job, which exceeds limits.seam_um = " +
+                                to_decimal_string(carriage.ab.seam_limit_um) +
+                                ": set fpga.fractional, or raise scanner.max_extra_slots");
+  }
+  report.carriage = said;
 }
 
 /// Do the windows put a pixel of either direction on the same place? The reverse one is the forward one run backwards,
@@ -105,8 +138,17 @@ void say_unread(const Tally& tally, VerifyReport& report) {
   }
 }
 
-void say_violations(const Plan& plan, const AxisCheck& axis, const Tally& tally, bool images_given,
+void say_off_axis(const Plan& plan, const AxisCheck& axis, const Finding& wrong, VerifyReport& report) {
+  if (wrong.count > 0) {
+    report.violations.push_back(std::string("the ") + axis.name() + " stands wrong at " + std::to_string(wrong.count) +
+                                " line start(s) or ends, the first at " + place(plan, wrong.ordinal) + ": " +
+                                wrong.detail);
+  }
+}
+
+void say_violations(const Plan& plan, const AxisChecks& axes, const Tally& tally, bool images_given,
                     VerifyReport& report) {
+  const AxisCheck& axis = axes.cross_scan;
   const auto say = [&](const std::string& what) { report.violations.push_back(what); };
   if (tally.refused.count > 0) {
     say("the device refused " + place(plan, tally.refused.ordinal) + ": " + tally.refused.detail);
@@ -119,9 +161,9 @@ void say_violations(const Plan& plan, const AxisCheck& axis, const Tally& tally,
     say(std::to_string(tally.misplaced.count) + " line(s) in the wrong place, the first at " +
         place(plan, tally.misplaced.ordinal) + ": " + tally.misplaced.detail);
   }
-  if (tally.off_axis.count > 0) {
-    say("the axis stands wrong at " + std::to_string(tally.off_axis.count) + " line start(s) or ends, the first at " +
-        place(plan, tally.off_axis.ordinal) + ": " + tally.off_axis.detail);
+  say_off_axis(plan, axis, tally.axis.wrong, report);
+  if (axes.carriage) {
+    say_off_axis(plan, *axes.carriage, tally.carriage.wrong, report);
   }
   if (!images_given) {
     say("the images were not found, so nothing proves that the program shows them: give --images DIR");
@@ -132,18 +174,22 @@ void say_violations(const Plan& plan, const AxisCheck& axis, const Tally& tally,
         place(plan, tally.first_wrong_ordinal) + ", column " + std::to_string(tally.first_wrong_column));
   }
   judge_windows(plan.line, report);
-  judge_drift(plan, axis, tally, report);
+  report.seam_end_measured_um = judge_drift(plan, plan.ab, plan.rotary.edges_per_revolution, axis, tally.axis, report);
   const Rational limit_lines = plan.ab.seam_limit_um / plan.rotary.line_pitch_um;
-  if (abs(Rational(axis.drift_per_line() * lines)) > limit_lines) {
+  const std::int64_t drifting = drifting_revolutions(axis, plan.job.revolutions - 1) * plan.rotary.lines_per_revolution;
+  if (abs(Rational(axis.drift_per_line() * drifting)) > limit_lines) {
     say("seam error of " + figure(report.seam_max_um) +
         " um at the end of the job exceeds limits.seam_um = " + to_decimal_string(plan.ab.seam_limit_um) +
         ": set fpga.fractional, raise scanner.max_extra_slots, or see `gravure suggest`");
+  }
+  if (axes.carriage) {
+    judge_carriage(plan, *axes.carriage, tally.carriage, report);
   }
 }
 
 }  // namespace
 
-VerifyReport judge(const Plan& plan, const AxisCheck& axis, const Tally& tally, bool images_given) {
+VerifyReport judge(const Plan& plan, const AxisChecks& axes, const Tally& tally, bool images_given) {
   VerifyReport report;
   report.revolutions = plan.job.revolutions;
   report.lines = tally.lines;
@@ -157,14 +203,15 @@ VerifyReport judge(const Plan& plan, const AxisCheck& axis, const Tally& tally, 
                    tally.first_wrong_ordinal % plan.rotary.lines_per_revolution, tally.first_wrong_column};
   }
   report.ticks = tally.end_tick;
-  report.ab_step_um = axis.step_um();
-  if (tally.worst_ordinal >= 0) {
-    report.axis_error_max_um = std::fabs(tally.worst_edges) * axis.step_um();
-    report.axis_worst_revolution = tally.worst_ordinal / plan.rotary.lines_per_revolution;
-    report.axis_worst_line = tally.worst_ordinal % plan.rotary.lines_per_revolution;
+  const AxisTally& seen = tally.axis;
+  report.ab_step_um = axes.cross_scan.step_um();
+  if (seen.worst_ordinal >= 0) {
+    report.axis_error_max_um = std::fabs(seen.worst_edges) * axes.cross_scan.step_um();
+    report.axis_worst_revolution = seen.worst_ordinal / plan.rotary.lines_per_revolution;
+    report.axis_worst_line = seen.worst_ordinal % plan.rotary.lines_per_revolution;
   }
-  fill_seam(plan, axis, report);
-  say_violations(plan, axis, tally, images_given, report);
+  fill_seam(plan, axes.cross_scan, report);
+  say_violations(plan, axes, tally, images_given, report);
   return report;
 }
 

@@ -7,6 +7,6 @@
 namespace gravure {
 
 /// The report on everything seen, with its violations.
-VerifyReport judge(const Plan& plan, const AxisCheck& axis, const Tally& tally, bool images_given);
+VerifyReport judge(const Plan& plan, const AxisChecks& axes, const Tally& tally, bool images_given);
 
 }  // namespace gravure

@@ -43,7 +43,6 @@ struct Finding {
   }
 };
 
-/// What one worker has seen; merged into one.
 /// A layer whose image could not be read, at least in part.
 struct UnreadLayer {
   std::int64_t lines = 0;   ///< of all revolutions, not compared
@@ -59,28 +58,43 @@ struct UnreadLayer {
   }
 };
 
-struct Tally {
-  std::int64_t lines = 0;
-  std::int64_t fired = 0;
-  std::int64_t wrong_pixels = 0;
-  std::int64_t first_wrong_ordinal = -1;
-  std::int64_t first_wrong_column = -1;
+/// What was seen of one axis.
+struct AxisTally {
   double worst_edges = 0;  ///< with sign
   std::int64_t worst_ordinal = -1;
-  std::int64_t end_tick = 0;
-  std::optional<std::uint64_t> end_edges;  ///< where the device says the axis stands at the end of the job
-  Finding refused;
-  Finding misplaced;
-  Finding off_axis;
-  std::map<std::int64_t, UnreadLayer> unread;  ///< by layer
+  std::optional<std::uint64_t> end_edges;  ///< where the device says it stands at the end of the job
+  Finding wrong;                           ///< not where its registers put it
 
-  void see_axis(double edges, std::int64_t ordinal) {
+  void see(double edges, std::int64_t ordinal) {
     if (worst_ordinal < 0 || std::fabs(edges) > std::fabs(worst_edges) ||
         (std::fabs(edges) == std::fabs(worst_edges) && ordinal < worst_ordinal)) {
       worst_edges = edges;
       worst_ordinal = ordinal;
     }
   }
+  void merge(const AxisTally& other) {
+    end_edges = other.end_edges ? other.end_edges : end_edges;
+    if (other.worst_ordinal >= 0) {
+      see(other.worst_edges, other.worst_ordinal);
+    }
+    wrong.merge(other.wrong);
+  }
+};
+
+/// What one worker has seen; merged into one.
+struct Tally {
+  std::int64_t lines = 0;
+  std::int64_t fired = 0;
+  std::int64_t wrong_pixels = 0;
+  std::int64_t first_wrong_ordinal = -1;
+  std::int64_t first_wrong_column = -1;
+  std::int64_t end_tick = 0;
+  AxisTally axis;
+  AxisTally carriage;
+  Finding refused;
+  Finding misplaced;
+  std::map<std::int64_t, UnreadLayer> unread;  ///< by layer
+
   void see_wrong(std::int64_t ordinal, std::int64_t column) {
     if (first_wrong_ordinal < 0 || std::tie(ordinal, column) < std::tie(first_wrong_ordinal, first_wrong_column)) {
       first_wrong_ordinal = ordinal;
@@ -92,16 +106,13 @@ struct Tally {
     fired += other.fired;
     wrong_pixels += other.wrong_pixels;
     end_tick = std::max(end_tick, other.end_tick);
-    end_edges = other.end_edges ? other.end_edges : end_edges;
     if (other.first_wrong_ordinal >= 0) {
       see_wrong(other.first_wrong_ordinal, other.first_wrong_column);
     }
-    if (other.worst_ordinal >= 0) {
-      see_axis(other.worst_edges, other.worst_ordinal);
-    }
+    axis.merge(other.axis);
+    carriage.merge(other.carriage);
     refused.merge(other.refused);
     misplaced.merge(other.misplaced);
-    off_axis.merge(other.off_axis);
     for (const auto& [layer, found] : other.unread) {
       unread[layer].add(found.chunk, found.lines, found.why);
     }

@@ -1,10 +1,14 @@
 #include "gravure/twin/unroll.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "chunk_run.hpp"
+#include "gather.hpp"
+#include "gravure/core/exposure_map.hpp"
 #include "gravure/raster/place.hpp"
 #include "gravure/raster/transpose.hpp"
 
@@ -15,113 +19,170 @@ std::size_t size(std::int64_t bytes) {
   return static_cast<std::size_t>(bytes);
 }
 
-class Watcher final : public PinObserver {
- public:
-  explicit Watcher(Landing& landing) : landing_(landing) {}
-  void on_line(const ExecutedLine& line) override { misplaced_ = !landing_.take(line) || misplaced_; }
-  bool misplaced() const { return misplaced_; }
+bool columns_are_lines(const ProgramHeader& header) {
+  return header.lines_along == LinesAlong::columns;
+}
 
- private:
-  Landing& landing_;
-  bool misplaced_ = false;
-};
+/// Ones become zeros and zeros ones, but for the unused bits of each row.
+void invert(std::span<std::byte> rows, std::int64_t width) {
+  const std::int64_t bytes = raster::packed_bytes(width);
+  std::for_each(rows.begin(), rows.end(), [](std::byte& byte) { byte = ~byte; });
+  const auto used = static_cast<std::byte>(0xFFU << static_cast<unsigned>(8 * bytes - width));
+  for (std::size_t last = size(bytes) - 1; last < rows.size(); last += size(bytes)) {
+    rows[last] &= used;
+  }
+}
 
-/// Runs a revolution chunk by chunk; `take(lines, first_line)` gets what landed, 1 = white.
-template <class Take>
-Result<void> run_revolution(LineSource& program, const DeviceFactory& devices, std::int64_t revolution,
-                            const CancelToken* cancel, Take&& take) {
+/// Runs a revolution that shows a whole image, chunk by chunk.
+Result<void> unroll_lines(LineSource& program, const DeviceFactory& devices, std::int64_t revolution,
+                          const RowSink& rows, const CancelToken* cancel) {
   const ProgramHeader& header = program.header();
-  const Plan& plan = header.plan;
-  Landing landing(plan);
-  Watcher watcher(landing);
-  const std::unique_ptr<DeviceLink> device = devices(watcher);
-  GRAVURE_CHECK(device->configure(device_setup(plan, revolution, 0)));
-  const std::int64_t layer = header.layer_of_revolution.at(size(revolution));
-  const std::int64_t lines = plan.rotary.lines_per_revolution;
-  ProgramChunk chunk;
-  for (std::int64_t k = 0; k * program.lines_per_chunk() < lines; ++k) {
-    if (cancel != nullptr && cancel->cancelled()) {
-      return Error{ErrorCode::cancelled, "stopped before the picture was complete; nothing was written"};
-    }
-    GRAVURE_CHECK(chunk.load(program, {layer, k}));
-    landing.start(chunk.lines());
-    GRAVURE_CHECK(chunk.send(header, revolution, *device));
-    if (watcher.misplaced() || landing.lines() != chunk.lines()) {
-      return Error{ErrorCode::device, "revolution " + std::to_string(revolution) + ", lines from " +
-                                          std::to_string(chunk.first_line()) +
-                                          ": the device marked outside the window the plan gives"};
-    }
-    GRAVURE_CHECK(
-        take(landing.turn_back(chunk.first_line(), line_is_reverse(plan, revolution, 0), header.fires == Fires::black),
-             chunk.first_line(), chunk.lines()));
+  ChunkRun runner(program, devices, cancel);
+  for (std::int64_t k = 0; k * program.lines_per_chunk() < header.plan.rotary.lines_per_revolution; ++k) {
+    GRAVURE_TRY(const std::span<const std::byte> landed, runner.run(revolution, k, header.fires == Fires::black));
+    GRAVURE_CHECK(rows(landed, runner.lines()));
   }
   return {};
 }
 
-/// One band of a picture whose lines run along columns: bytes [first, first + width) of every line, turned into rows.
-Result<void> unroll_band(LineSource& program, const DeviceFactory& devices, std::int64_t revolution,
-                         std::int64_t first_byte, std::int64_t rows, const RowSink& sink, const CancelToken* cancel) {
-  const ProgramHeader& header = program.header();
-  const std::int64_t lines = header.plan.rotary.lines_per_revolution;
-  const std::int64_t slab = raster::packed_bytes(rows);
-  std::vector<std::byte> strip(size(lines * slab));
-  GRAVURE_CHECK(
-      run_revolution(program, devices, revolution, cancel,
-                     [&](std::span<const std::byte> landed, std::int64_t first, std::int64_t count) -> Result<void> {
-                       for (std::int64_t i = 0; i < count; ++i) {
-                         std::memcpy(strip.data() + (first + i) * slab,
-                                     landed.data() + i * header.line_bytes() + first_byte, size(slab));
-                       }
-                       return {};
-                     }));
-  std::vector<std::byte> turned(size(rows * raster::packed_bytes(lines)));
-  raster::transpose(turned, strip, lines, rows);
-  return sink(turned, rows);
+constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+
+/// What unrolling takes beside the part of the picture: a chunk as stored, unpacked, turned, fired and landed, library
+/// and codec.
+std::int64_t fixed_bytes(const LineSource& program) {
+  return 6 * kMiB + 6 * program.lines_per_chunk() * program.header().line_bytes();
 }
 
-/// Bytes of every line that a band may hold: it is held twice, before and after it is turned, beside a chunk as stored,
-/// unpacked, turned, fired and landed.
-Result<std::int64_t> fitting_band(const LineSource& program, const UnrollOptions& options) {
-  constexpr std::int64_t kMiB = std::int64_t{1} << 20;
-  const ProgramHeader& header = program.header();
-  const std::int64_t fixed = 6 * kMiB + 6 * program.lines_per_chunk() * header.line_bytes();
-  const std::int64_t a_byte = 2 * (header.plan.rotary.lines_per_revolution + 7);
-  if (options.memory_bytes < fixed + a_byte) {
+/// How many of `all` units of the picture fit the budget, each `unit` bytes; at least one must.
+Result<std::int64_t> fitting(const LineSource& program, const UnrollOptions& options, std::int64_t unit,
+                             std::int64_t all) {
+  const std::int64_t fixed = fixed_bytes(program);
+  if (options.memory_bytes < fixed + unit) {
     return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options.memory_bytes / kMiB) +
                                               " MiB: turning this picture needs at least " +
-                                              std::to_string((fixed + a_byte + kMiB - 1) / kMiB) + " MiB"};
+                                              std::to_string((fixed + unit + kMiB - 1) / kMiB) + " MiB"};
   }
-  return std::clamp<std::int64_t>((options.memory_bytes - fixed) / a_byte, 1, header.line_bytes());
+  return std::clamp<std::int64_t>((options.memory_bytes - fixed) / unit, 1, all);
+}
+
+/// Puts the picture together line by line, as many at a time as fit the budget.
+Result<void> gather_lines(LineSource& program, ChunkRun& runner, const Showing& showing, const RowSink& rows,
+                          const UnrollOptions& options) {
+  const ProgramHeader& header = program.header();
+  const std::int64_t columns = image_columns(header.plan);
+  const std::int64_t all = header.plan.rotary.lines_per_revolution;
+  const std::int64_t bytes = raster::packed_bytes(columns);
+  GRAVURE_TRY(const std::int64_t fit, fitting(program, options, bytes, all));
+  const std::int64_t block = std::min(fit, std::max<std::int64_t>(1, program.lines_per_chunk()));
+  std::vector<std::byte> lines(size(block * bytes));
+  for (std::int64_t first = 0; first < all; first += block) {
+    const std::int64_t count = std::min(block, all - first);
+    const std::span<std::byte> out = std::span(lines).first(size(count * bytes));
+    GRAVURE_CHECK(gather(program, runner, showing, {first, first + count, 0, columns}, out));
+    if (header.fires == Fires::black) {
+      invert(out, columns);
+    }
+    GRAVURE_CHECK(rows(out, count));
+  }
+  return {};
+}
+
+/// A picture whose lines run along columns: as many of its rows as fit the budget, twice, before and after they are
+/// turned.
+Result<void> gather_columns(LineSource& program, ChunkRun& runner, const Showing& showing, const RowSink& rows,
+                            const UnrollOptions& options) {
+  const ProgramHeader& header = program.header();
+  const std::int64_t columns = image_columns(header.plan);
+  const std::int64_t lines = header.plan.rotary.lines_per_revolution;
+  GRAVURE_TRY(const std::int64_t fit,
+              fitting(program, options, 2 * (lines + 7), raster::packed_bytes(columns)));  // eight rows a byte
+  for (std::int64_t first = 0; first < columns; first += 8 * fit) {
+    const std::int64_t count = std::min(8 * fit, columns - first);
+    std::vector<std::byte> strip(size(lines * raster::packed_bytes(count)));
+    GRAVURE_CHECK(gather(program, runner, showing, {0, lines, first, first + count}, strip));
+    std::vector<std::byte> turned(size(count * raster::packed_bytes(lines)));
+    raster::transpose(turned, strip, lines, count);
+    if (header.fires == Fires::black) {
+      invert(turned, lines);
+    }
+    GRAVURE_CHECK(rows(turned, count));
+  }
+  return {};
+}
+
+Result<void> unroll_showing(LineSource& program, const DeviceFactory& devices, const Showing& showing,
+                            const RowSink& rows, const UnrollOptions& options) {
+  ChunkRun runner(program, devices, options.cancel);
+  return columns_are_lines(program.header()) ? gather_columns(program, runner, showing, rows, options)
+                                             : gather_lines(program, runner, showing, rows, options);
+}
+
+/// The revolutions that show the image of `revolution`: the same one of every band.
+Showing showing_with(const Plan& plan, std::int64_t revolution) {
+  Showing showing;
+  const std::int64_t each = revolutions_per_band(plan);
+  for (std::int64_t r = revolution % each; r < plan.job.revolutions; r += each) {
+    showing.revolutions.push_back(r);
+  }
+  return showing;
+}
+
+Result<void> check_index(const char* option, std::int64_t value, std::int64_t count) {
+  if (value < 0 || value >= count) {
+    return Error{ErrorCode::out_of_range, std::string(option) + " " + std::to_string(value) +
+                                              ": the program has 0 to " + std::to_string(count - 1)};
+  }
+  return {};
 }
 
 }  // namespace
 
 UnrolledSize unrolled_size(const ProgramHeader& header) {
   const std::int64_t lines = header.plan.rotary.lines_per_revolution;
-  const std::int64_t pixels = header.plan.line.pixels;
-  return header.lines_along == LinesAlong::rows ? UnrolledSize{pixels, lines} : UnrolledSize{lines, pixels};
+  const std::int64_t columns = image_columns(header.plan);
+  return columns_are_lines(header) ? UnrolledSize{lines, columns} : UnrolledSize{columns, lines};
+}
+
+std::int64_t image_layers(const ProgramHeader& header) {
+  if (header.plan.carriage) {
+    return header.plan.carriage->layers;
+  }
+  std::set<std::pair<std::int64_t, std::int64_t>> images;
+  for (const StoredLayer& layer : header.layers) {
+    images.emplace(layer.source, layer.level);
+  }
+  return static_cast<std::int64_t>(images.size());
 }
 
 Result<void> unroll(LineSource& program, const DeviceFactory& devices, std::int64_t revolution, const RowSink& rows,
                     const UnrollOptions& options) {
   const ProgramHeader& header = program.header();
-  const std::int64_t revolutions = header.plan.job.revolutions;
-  if (revolution < 0 || revolution >= revolutions) {
-    return Error{ErrorCode::out_of_range, "--revolution " + std::to_string(revolution) + ": the program has 0 to " +
-                                              std::to_string(revolutions - 1)};
+  if (header.plan.carriage) {
+    return Error{ErrorCode::bad_argument,
+                 "--revolution " + std::to_string(revolution) +
+                     ": a revolution of a helical program shows a part of each layer; give --layer, 0 to " +
+                     std::to_string(header.plan.carriage->layers - 1)};
   }
-  if (header.lines_along == LinesAlong::rows) {
-    return run_revolution(
-        program, devices, revolution, options.cancel,
-        [&](std::span<const std::byte> landed, std::int64_t, std::int64_t count) { return rows(landed, count); });
+  GRAVURE_CHECK(check_index("--revolution", revolution, header.plan.job.revolutions));
+  if (ExposureMap(header.plan).whole_images() && !columns_are_lines(header)) {
+    return unroll_lines(program, devices, revolution, rows, options.cancel);
   }
-  GRAVURE_TRY(const std::int64_t band_bytes, fitting_band(program, options));
-  const std::int64_t pixels = header.plan.line.pixels;
-  for (std::int64_t byte = 0; byte < header.line_bytes(); byte += band_bytes) {
-    const std::int64_t band_rows = std::min(pixels - byte * 8, band_bytes * 8);
-    GRAVURE_CHECK(unroll_band(program, devices, revolution, byte, band_rows, rows, options.cancel));
+  return unroll_showing(program, devices, showing_with(header.plan, revolution), rows, options);
+}
+
+Result<void> unroll_layer(LineSource& program, const DeviceFactory& devices, std::int64_t layer, const RowSink& rows,
+                          const UnrollOptions& options) {
+  const Plan& plan = program.header().plan;
+  GRAVURE_CHECK(check_index("--layer", layer, image_layers(program.header())));
+  if (!plan.carriage) {
+    return unroll(program, devices, layer, rows, options);  // every order shows them one after the other
   }
-  return {};
+  Showing showing;
+  showing.stretch = plan.carriage->layers - 1 - layer;
+  for (std::int64_t r = 0; r < plan.job.revolutions; ++r) {
+    showing.revolutions.push_back(r);
+  }
+  return unroll_showing(program, devices, showing, rows, options);
 }
 
 }  // namespace gravure

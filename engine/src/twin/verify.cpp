@@ -29,12 +29,12 @@ struct Group {
 
 class Verifier {
  public:
-  Verifier(const ProgramHeader& header, std::int64_t lines_per_chunk, const AxisCheck& axis,
+  Verifier(const ProgramHeader& header, std::int64_t lines_per_chunk, const AxisChecks& axes,
            const DeviceFactory& devices, const VerifyOptions& options)
       : header_(header),
         plan_(header.plan),
         lines_per_chunk_(lines_per_chunk),
-        axis_(axis),
+        axes_(axes),
         devices_(devices),
         options_(options),
         revolutions_of_(header.layers.size()) {
@@ -137,7 +137,7 @@ class Verifier {
   const ProgramHeader& header_;
   const Plan& plan_;
   const std::int64_t lines_per_chunk_;
-  const AxisCheck& axis_;
+  const AxisChecks& axes_;
   const DeviceFactory& devices_;
   const VerifyOptions& options_;
   std::vector<std::vector<std::int64_t>> revolutions_of_;
@@ -169,14 +169,9 @@ class Verifier::Worker final : public PinObserver {
     tally_.fired += raster::popcount(line.fired);
     const std::int64_t ordinal = first_ordinal_ + landing_.lines();
     const bool in_time = line.ordinal == ordinal && line.start_tick == ordinal * plan_.line.ticks;
-    tally_.see_axis(parent_.axis_.error_edges(line.ordinal, line.axis_at_start), line.ordinal);
-    const std::uint64_t expected = parent_.axis_.register_edges(line.start_tick);
-    if (line.axis_at_start.edges != expected) {
-      tally_.off_axis.add(line.ordinal, edges_text(line.axis_at_start.edges, expected));
-    }
-    const std::int64_t lost_from = parent_.axis_.first_misplaced_line();
-    if (lost_from >= 0 && line.ordinal >= lost_from) {
-      tally_.misplaced.add(line.ordinal, "the axis is half a line or more away");
+    see_axis(parent_.axes_.cross_scan, line, line.axis_at_start, tally_.axis);
+    if (parent_.axes_.carriage) {
+      see_axis(*parent_.axes_.carriage, line, line.carriage_at_start, tally_.carriage);
     }
     if (!landing_.take(line) || !in_time) {
       tally_.misplaced.add(line.ordinal, "the line came at another time or in another window than planned");
@@ -238,7 +233,29 @@ class Verifier::Worker final : public PinObserver {
     }
   }
 
-  /// What the device says of itself between two chunks: the time, and where the axis stands.
+  void see_axis(const AxisCheck& check, const ExecutedLine& line, const AxisState& state, AxisTally& tally) {
+    tally.see(check.error_edges(line.ordinal, state), line.ordinal);
+    if (const std::uint64_t expected = check.register_edges(line.start_tick); state.edges != expected) {
+      tally.wrong.add(line.ordinal, edges_text(state.edges, expected));
+    }
+    const std::int64_t lost_from = check.first_misplaced_line();
+    if (lost_from >= 0 &&
+        (check.accumulates() ? line.ordinal : line.ordinal % plan_.rotary.lines_per_revolution) >= lost_from) {
+      tally_.misplaced.add(line.ordinal, std::string("the ") + check.name() + " is half a line or more away");
+    }
+  }
+
+  void see_axis_end(const AxisCheck& check, const DeviceStatus& status, const AxisState& state,
+                    std::int64_t end_ordinal, AxisTally& tally) {
+    if (const std::uint64_t expected = check.register_edges(status.tick); state.edges != expected) {
+      tally.wrong.add(end_ordinal - 1, "at its end " + edges_text(state.edges, expected));
+    }
+    if (status.tick == plan_.job.ticks) {
+      tally.end_edges = state.edges;
+    }
+  }
+
+  /// What the device says of itself between two chunks: the time, and where the axes stand.
   void see_end() {
     const DeviceStatus status = device_->status();
     tally_.end_tick = std::max(tally_.end_tick, status.tick);
@@ -246,11 +263,9 @@ class Verifier::Worker final : public PinObserver {
     if (status.tick != end_ordinal * plan_.line.ticks) {
       return;  // refused or lost lines are said elsewhere
     }
-    if (const std::uint64_t expected = parent_.axis_.register_edges(status.tick); status.axis.edges != expected) {
-      tally_.off_axis.add(end_ordinal - 1, "at its end " + edges_text(status.axis.edges, expected));
-    }
-    if (status.tick == plan_.job.ticks) {
-      tally_.end_edges = status.axis.edges;
+    see_axis_end(parent_.axes_.cross_scan, status, status.axis, end_ordinal, tally_.axis);
+    if (parent_.axes_.carriage) {
+      see_axis_end(*parent_.axes_.carriage, status, status.carriage, end_ordinal, tally_.carriage);
     }
   }
 
@@ -337,11 +352,11 @@ Result<VerifyReport> verify(const std::function<Result<std::unique_ptr<LineSourc
   const ProgramHeader& header = program->header();
   const Plan& plan = header.plan;
   GRAVURE_CHECK(check_header(header));
-  GRAVURE_TRY(const AxisCheck axis, AxisCheck::make(plan));
-  Verifier verifier(header, program->lines_per_chunk(), axis, devices, options);
+  GRAVURE_TRY(const AxisChecks axes, AxisChecks::make(plan));
+  Verifier verifier(header, program->lines_per_chunk(), axes, devices, options);
   GRAVURE_TRY(const Tally tally, verifier.run(programs, images));
 
-  return judge(plan, axis, tally, static_cast<bool>(images));
+  return judge(plan, axes, tally, static_cast<bool>(images));
 }
 
 }  // namespace gravure

@@ -65,7 +65,7 @@ Result<void> check_header(const ProgramHeader& header, const Layout& layout,
 }
 
 std::vector<PlanNumber> plan_numbers(const Plan& plan) {
-  return {
+  std::vector<PlanNumber> numbers = {
       {"seed_hz", plan.clock.seed_hz, "Hz"},
       {"fpga_hz", plan.clock.fpga_hz, "Hz"},
       {"pulse_divider", plan.clock.pulse_divider, "seed pulses per pulse slot"},
@@ -88,6 +88,22 @@ std::vector<PlanNumber> plan_numbers(const Plan& plan) {
       {"revolutions", plan.job.revolutions, "revolutions"},
       {"job_ticks", plan.job.ticks, "FPGA ticks"},
   };
+  if (plan.carriage) {
+    const CarriagePlan& carriage = *plan.carriage;
+    numbers.insert(numbers.end(),
+                   {{"columns", carriage.columns, "columns of the images"},
+                    {"layers_per_line", carriage.layers, "layers exposed by a line"},
+                    {"carriage_prescaler", carriage.ab.prescaler, "FPGA ticks per addition"},
+                    {"carriage_increment", carriage.ab.increment, "counts per addition"},
+                    {"carriage_fraction_num", carriage.ab.fraction_num, "counts / carriage_fraction_den per addition"},
+                    {"carriage_fraction_den", carriage.ab.fraction_den, "1"}});
+  }
+  if (plan.bands) {
+    numbers.insert(numbers.end(), {{"columns", plan.bands->columns, "columns of the images"},
+                                   {"bands", plan.bands->count, "bands"},
+                                   {"revolutions_per_band", plan.bands->revolutions_per_band, "revolutions"}});
+  }
+  return numbers;
 }
 
 }  // namespace gravure::grv

@@ -16,6 +16,9 @@ const char* lines_along_name(LinesAlong along) {
 
 /// What one could change on the job's side so that `lines` lines close the circumference.
 std::string fitting_lines(const Plan& plan, const Job& job, std::int64_t lines) {
+  if (plan.mode == Mode::flat) {
+    return fmt::format("\n  [stage] lines = {}", lines);
+  }
   const double circumference_um = to_double(plan.rotary.circumference_um);
   const double pitch_um = to_double(job.rotary.line_pitch_um.value_or(plan.rotary.line_pitch_um));
   const auto count = static_cast<double>(lines);
@@ -30,14 +33,14 @@ std::string fitting_lines(const Plan& plan, const Job& job, std::int64_t lines) 
 }
 
 Error misfit(const Plan& plan, const Job& job, const StackImage& image, const ScanSize& have) {
-  const ScanSize want{plan.line.pixels, plan.rotary.lines_per_revolution};
+  const ScanSize want{image_columns(plan), plan.rotary.lines_per_revolution};
   const ScanSize wanted_image = scan_size(job.image, want.pixels_per_line, want.lines);  // its own inverse
   std::string message = fmt::format(
       "{}: page {}: {} x {} pixels read with lines_along = \"{}\" are {} lines of {} pixels, but the job has {} lines "
-      "a "
-      "revolution of {} pixels. What fits:\n  an image of {} x {} pixels",
+      "a {} of {} pixels. What fits:\n  an image of {} x {} pixels",
       image.path, image.page, image.info.width, image.info.height, lines_along_name(job.image.lines_along), have.lines,
-      have.pixels_per_line, want.lines, want.pixels_per_line, wanted_image.pixels_per_line, wanted_image.lines);
+      have.pixels_per_line, want.lines, plan.mode == Mode::flat ? "pass" : "revolution", want.pixels_per_line,
+      wanted_image.pixels_per_line, wanted_image.lines);
   if (have.lines == want.pixels_per_line && have.pixels_per_line == want.lines) {
     const bool rows = job.image.lines_along == LinesAlong::rows;
     message += fmt::format("\n  [image] lines_along = \"{}\"", rows ? "columns" : "rows");
@@ -71,7 +74,8 @@ std::optional<std::string> size_warning(const StackImage& image, const char* dir
 /// The first image that contradicts the job in a direction speaks for all of them.
 std::vector<std::string> size_warnings(const Plan& plan, const Job& job, const ImageStack& stack) {
   const bool rows = job.image.lines_along == LinesAlong::rows;
-  const double along_mm = static_cast<double>(plan.line.pixels) * to_double(plan.line.pixel_pitch_um) / 1000;
+  const std::int64_t columns = image_columns(plan);
+  const double along_mm = static_cast<double>(columns) * to_double(plan.line.pixel_pitch_um) / 1000;
   const double around_mm = to_double(plan.rotary.circumference_um) / 1000;
   std::optional<std::string> along;
   std::optional<std::string> around;
@@ -80,10 +84,11 @@ std::vector<std::string> size_warnings(const Plan& plan, const Job& job, const I
     const auto& along_dots = rows ? info.x_dots_per_mm : info.y_dots_per_mm;
     const auto& around_dots = rows ? info.y_dots_per_mm : info.x_dots_per_mm;
     if (!along) {
-      along = size_warning(image, "along the line", plan.line.pixels, along_dots, along_mm);
+      along = size_warning(image, "along the line", columns, along_dots, along_mm);
     }
     if (!around) {
-      around = size_warning(image, "round the workpiece", plan.rotary.lines_per_revolution, around_dots, around_mm);
+      around = size_warning(image, plan.mode == Mode::flat ? "along the stage" : "round the workpiece",
+                            plan.rotary.lines_per_revolution, around_dots, around_mm);
     }
   }
   std::vector<std::string> warnings;
@@ -97,7 +102,10 @@ std::vector<std::string> size_warnings(const Plan& plan, const Job& job, const I
 
 Result<void> check_revolutions(const Plan& plan, const Job& job, const ImageStack& stack,
                                std::vector<std::string>& warnings) {
-  const std::int64_t revolutions = plan.job.revolutions;
+  if (plan.carriage) {
+    return {};  // the planner has counted the layers
+  }
+  const std::int64_t revolutions = revolutions_per_band(plan);
   if (job.image.order == LayerOrder::sequence && revolutions != stack.layers) {
     return Error{
         ErrorCode::bad_argument,
@@ -119,7 +127,7 @@ Result<void> check_revolutions(const Plan& plan, const Job& job, const ImageStac
 Result<std::vector<std::string>> check_stack(const Plan& plan, const Job& job, const ImageStack& stack) {
   for (const StackImage& image : stack.images) {
     const ScanSize have = scan_size(job.image, image.info.width, image.info.height);
-    if (have.lines != plan.rotary.lines_per_revolution || have.pixels_per_line != plan.line.pixels) {
+    if (have.lines != plan.rotary.lines_per_revolution || have.pixels_per_line != image_columns(plan)) {
       return misfit(plan, job, image, have);
     }
   }

@@ -75,6 +75,24 @@ void check_depth_keys(const Section& image, const Job& job, Violations& violatio
   check_depth_ends(image, job, violations);
 }
 
+/// In a helical job the carriage decides which layer is exposed when, and how many turns that takes.
+void check_helical(const Document& document, const Section& image, const Job& job, Violations& violations) {
+  for (const char* key : {"revolutions", "order"}) {
+    if (const Entry* entry = image.find(key)) {
+      violations.add(entry->at, full_name(image, *entry) +
+                                    ": has no meaning with mode = \"helical\", where [carriage] feed_pixels and layers "
+                                    "decide what each turn exposes; take it out");
+    }
+  }
+  const Section* carriage = document.find("carriage");
+  const Entry* layers = carriage != nullptr && carriage->is_table ? carriage->find("layers") : nullptr;
+  const Entry* levels = image.find("levels");
+  if (layers != nullptr && levels != nullptr && job.image.levels && *job.image.levels != job.carriage.layers) {
+    violations.add(levels->at, full_name(image, *levels) + ": contradicts [carriage] " + elsewhere(*layers) +
+                                   "; every level is a layer of the pass, so give both the same number");
+  }
+}
+
 void check_layer_count(const Section& image, const Job& job, Violations& violations) {
   const bool in_sequence = job.image.order == LayerOrder::sequence;
   if (in_sequence && job.image.levels && job.image.revolutions && *job.image.levels != *job.image.revolutions) {
@@ -87,9 +105,9 @@ void check_layer_count(const Section& image, const Job& job, Violations& violati
 
 }  // namespace
 
-void check_rules(const Document& document, const Job& job, Violations& violations) {
+void check_rules(const Document& document, const Job& job, std::optional<Mode> mode, Violations& violations) {
   const Section* rotary = document.find("rotary");
-  if (rotary != nullptr && rotary->is_table) {
+  if (rotary != nullptr && rotary->is_table && mode != Mode::flat) {
     exactly_one(*rotary, "diameter_mm", "circumference_mm", violations);
     exactly_one(*rotary, "line_pitch_um", "lines_per_revolution", violations);
   }
@@ -97,7 +115,11 @@ void check_rules(const Document& document, const Job& job, Violations& violation
   if (image != nullptr && image->is_table) {
     check_image_kind(*image, violations);
     check_depth_keys(*image, job, violations);
-    check_layer_count(*image, job, violations);
+    if (mode == Mode::helical) {
+      check_helical(document, *image, job, violations);
+    } else {
+      check_layer_count(*image, job, violations);
+    }
   }
 }
 

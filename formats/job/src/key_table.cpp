@@ -8,9 +8,10 @@ namespace {
 
 using Store = void (*)(Job&, const Value&);
 
-constexpr std::array<std::string_view, 7> kSections = {"job", "laser", "fpga", "scanner", "rotary", "image", "limits"};
-constexpr std::array<std::string_view, 1> kModes = {"rotary"};
-constexpr std::array<std::string_view, 4> kLaterModes = {"helical", "flat", "freeform", "zones"};
+constexpr std::array<std::string_view, 9> kSections = {"job",      "laser", "fpga",  "scanner", "rotary",
+                                                       "carriage", "stage", "image", "limits"};
+constexpr std::array<std::string_view, 3> kModes = {"rotary", "helical", "flat"};  // as Mode counts them
+constexpr std::array<std::string_view, 2> kLaterModes = {"freeform", "zones"};
 constexpr std::array<std::string_view, 2> kFires = {"white", "black"};
 constexpr std::array<std::string_view, 2> kLinesAlong = {"rows", "columns"};
 constexpr std::array<std::string_view, 3> kOrders = {"sequence", "cycle", "hold"};
@@ -61,7 +62,7 @@ constexpr std::string_view kBiggestHz = "10_000_000_000";
 // make_plan() checks the products.
 constexpr std::array kTable = {
     other("job", "title", Type::title, "\"\"", [](Job& j, const Value& v) { j.title = v.text; }),
-    word("job", "mode", kModes, kRequired, [](Job& j, const Value&) { j.mode = Mode::rotary; }),
+    word("job", "mode", kModes, kRequired, [](Job& j, const Value& v) { j.mode = enum_of<Mode>(kModes, v); }),
 
     integer("laser", "seed_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.laser.seed_hz = v.integer; }),
@@ -90,6 +91,8 @@ constexpr std::array kTable = {
           [](Job& j, const Value& v) { j.scanner.bidirectional = v.boolean; }),
     integer("scanner", "bidirectional_offset_ticks", "FPGA ticks", "-1_000_000_000", "1_000_000_000", "0",
             [](Job& j, const Value& v) { j.scanner.bidirectional_offset_ticks = v.integer; }),
+    decimal("scanner", "field_mm", "mm", "0.001", "10_000", "none: the image fits",
+            [](Job& j, const Value& v) { j.scanner.field_mm = v.number; }),
 
     decided(decimal("rotary", "diameter_mm", "mm", "0.01", "10_000", kOneOfSizes,
                     [](Job& j, const Value& v) { j.rotary.diameter_mm = v.number; })),
@@ -118,6 +121,28 @@ constexpr std::array kTable = {
             }},
     integer("rotary", "max_ab_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.rotary.max_ab_hz = v.integer; }),
+
+    decimal("carriage", "feed_pixels", "columns per turn", "0.001", "1_000_000", kRequired,
+            [](Job& j, const Value& v) { j.carriage.feed_pixels = v.number; }),
+    integer("carriage", "layers", "layers", "1", "65_536", kRequired,
+            [](Job& j, const Value& v) { j.carriage.layers = v.integer; }),
+    decimal("carriage", "encoder_pitch_um", "um", "0.001", "1_000_000", kRequired,
+            [](Job& j, const Value& v) { j.carriage.encoder_pitch_um = v.number; }),
+    integer("carriage", "interpolation_bits", "bits", "0", "32", kRequired,
+            [](Job& j, const Value& v) { j.carriage.interpolation_bits = static_cast<int>(v.integer); }),
+    integer("carriage", "max_ab_hz", "Hz", "1", kBiggestHz, kRequired,
+            [](Job& j, const Value& v) { j.carriage.max_ab_hz = v.integer; }),
+
+    integer("stage", "lines", "lines", "1", "1_000_000_000", kRequired,
+            [](Job& j, const Value& v) { j.stage.lines = v.integer; }),
+    decimal("stage", "line_pitch_um", "um", "0.001", "10_000", kRequired,
+            [](Job& j, const Value& v) { j.stage.line_pitch_um = v.number; }),
+    decimal("stage", "encoder_pitch_um", "um", "0.001", "1_000_000", kRequired,
+            [](Job& j, const Value& v) { j.stage.encoder_pitch_um = v.number; }),
+    integer("stage", "interpolation_bits", "bits", "0", "32", kRequired,
+            [](Job& j, const Value& v) { j.stage.interpolation_bits = static_cast<int>(v.integer); }),
+    integer("stage", "max_ab_hz", "Hz", "1", kBiggestHz, kRequired,
+            [](Job& j, const Value& v) { j.stage.max_ab_hz = v.integer; }),
 
     decided(other("image", "files", Type::paths, kOneOfImages,
                   [](Job& j, const Value& v) {
@@ -175,6 +200,18 @@ std::span<const std::string_view> section_names() {
 
 std::span<const std::string_view> later_modes() {
   return kLaterModes;
+}
+
+std::optional<Mode> mode_of(std::string_view word) {
+  const auto found = std::find(kModes.begin(), kModes.end(), word);
+  return found == kModes.end() ? std::nullopt : std::optional(static_cast<Mode>(found - kModes.begin()));
+}
+
+bool section_is_of(std::string_view section, Mode mode) {
+  if (section == "carriage") {
+    return mode == Mode::helical;
+  }
+  return section == "stage" ? mode == Mode::flat : section != "rotary" || mode != Mode::flat;
 }
 
 const KeySpec* find_key(std::string_view section, std::string_view key) {

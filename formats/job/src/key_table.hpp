@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,6 +48,12 @@ const KeySpec* find_key(std::string_view section, std::string_view key);
 
 /// `mode` words that a later version will run.
 std::span<const std::string_view> later_modes();
+
+/// The mode that `mode = "word"` asks for, where this version runs it.
+std::optional<Mode> mode_of(std::string_view word);
+
+/// Does a job of this mode have the section?
+bool section_is_of(std::string_view section, Mode mode);
 
 /// "1 to 1_000_000", "\"rows\" or \"columns\"": what the value may be, for documentation and messages.
 std::string range_text(const KeySpec& spec);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -58,11 +59,12 @@ class Reader {
     if (is_later_mode()) {
       return std::move(job_);
     }
+    mode_ = given_mode();
     for (const Section& section : document_.sections) {
       read_section(section);
     }
     report_missing();
-    check_rules(document_, job_, violations_);
+    check_rules(document_, job_, mode_, violations_);
     return std::move(job_);
   }
 
@@ -78,8 +80,27 @@ class Reader {
     }
     violations_.add(mode->value.at, "[job] mode = " + mode->value.shown + ": this version runs " +
                                         range_text(*find_key("job", "mode")) +
-                                        " only; \"helical\", \"flat\", \"freeform\" and \"zones\" need a later one");
+                                        " only; \"freeform\" and \"zones\" need a later one");
     return true;
+  }
+
+  std::optional<Mode> given_mode() const {
+    const Section* section = document_.find("job");
+    const Entry* mode = section != nullptr && section->is_table ? section->find("mode") : nullptr;
+    return mode != nullptr && mode->value.kind == Kind::text ? mode_of(mode->value.text) : std::nullopt;
+  }
+
+  /// A section that only another mode has. Where the mode itself is missing or wrong, that is all there is to say.
+  bool is_of_another_mode(const std::string& section) const { return mode_ && !section_is_of(section, *mode_); }
+
+  void report_other_mode(const Section& section) {
+    const std::string_view owner = section.name == "carriage" ? "helical" : section.name == "stage" ? "flat" : "";
+    const std::string mode = "mode = \"" + std::string(mode_name(*mode_)) + "\"";
+    violations_.add(section.at, owner.empty()
+                                    ? bracketed(section.name) + ": nothing turns with " + mode +
+                                          ": describe the stage in [stage] instead, or set mode = \"rotary\""
+                                    : bracketed(section.name) + ": only mode = \"" + std::string(owner) +
+                                          "\" has this section, not " + mode + ": take it out, or set that mode");
   }
 
   void read_section(const Section& section) {
@@ -88,6 +109,8 @@ class Reader {
       report_loose_value(section, is_known);
     } else if (!is_known) {
       violations_.add(section.at, bracketed(section.name) + ": unknown section" + section_advice(section.name));
+    } else if (is_of_another_mode(section.name)) {
+      report_other_mode(section);
     } else {
       job_.places.emplace(section.name, section.at);
       for (const Entry& entry : section.entries) {
@@ -233,9 +256,20 @@ class Reader {
     return check_range(spec, value, value.items[1]) && first;
   }
 
+  /// Sections of single modes are needed in those; without a known mode [rotary] or [stage] is.
+  bool is_needed(std::string_view section) const {
+    if (mode_) {
+      return section_is_of(section, *mode_);
+    }
+    return section_is_of(section, Mode::rotary) && (section != "rotary" || document_.find("stage") == nullptr);
+  }
+
   void report_missing() {
     for (const std::string_view name : section_names()) {
       const Section* section = document_.find(name);
+      if (section == nullptr ? !is_needed(name) : is_of_another_mode(section->name)) {
+        continue;
+      }
       if (section == nullptr && meant_.count(std::string(name)) != 0) {
         continue;  // said where it is misspelt
       }
@@ -272,6 +306,7 @@ class Reader {
 
   const Document& document_;
   Job job_;
+  std::optional<Mode> mode_;     ///< none: missing or wrong, which is said
   std::set<std::string> meant_;  ///< sections and keys ("laser.seed_hz") that a misspelt one stands for
   Violations violations_;
 };

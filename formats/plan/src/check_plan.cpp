@@ -3,25 +3,27 @@
 #include <optional>
 #include <string>
 
+#include "gravure/core/exposure_map.hpp"
+
 namespace gravure::plan_json {
 namespace {
 
 /// Keeps the first complaint.
 class Complaint {
  public:
-  void unless(bool fine, const char* key, const std::string& problem) {
+  void unless(bool fine, const std::string& key, const std::string& problem) {
     if (!fine && !error_) {
-      error_ = Error{ErrorCode::bad_file, std::string("plan: ") + key + " " + problem};
+      error_ = Error{ErrorCode::bad_file, "plan: " + key + " " + problem};
     }
   }
-  void least_one(const char* key, const Integer& value) {
+  void least_one(const std::string& key, const Integer& value) {
     unless(value >= 1, key, "= " + to_string(value) + ": must be at least 1");
   }
-  void positive(const char* key, const Rational& value) {
+  void positive(const std::string& key, const Rational& value) {
     unless(value > 0, key, "= " + to_string(value).substr(0, kShown) + ": must be greater than 0");
   }
   /// A figure that follows from the others.
-  void equal(const char* key, const Rational& value, const Rational& expected) {
+  void equal(const std::string& key, const Rational& value, const Rational& expected) {
     unless(value == expected, key,
            "= " + to_string(value).substr(0, kShown) + ": the rest of the plan gives " +
                to_string(expected).substr(0, kShown));
@@ -33,6 +35,13 @@ class Complaint {
   static constexpr std::size_t kShown = 80;
   std::optional<Error> error_;
 };
+
+void check_counter(const AbPlan& ab, const std::string& section, Complaint& complaint) {
+  complaint.least_one(section + "prescaler", ab.prescaler);
+  complaint.least_one(section + "fraction.den", ab.fraction_den);
+  complaint.unless(ab.counter_bits >= 2 && ab.counter_bits <= 64, section + "counter_bits", "must be 2 to 64");
+  complaint.positive(section + "seam_limit_um", ab.seam_limit_um);
+}
 
 /// What later checks, and everybody else, divide by or shift by.
 void check_divisors(const Plan& plan, Complaint& complaint) {
@@ -46,15 +55,27 @@ void check_divisors(const Plan& plan, Complaint& complaint) {
   complaint.positive("line.pixel_pitch_um", plan.line.pixel_pitch_um);
   complaint.least_one("rotary.lines_per_revolution", plan.rotary.lines_per_revolution);
   complaint.positive("rotary.circumference_um", plan.rotary.circumference_um);
-  complaint.least_one("rotary.encoder_lines", plan.rotary.encoder_lines);
+  if (plan.mode == Mode::flat) {
+    complaint.positive("stage.encoder_pitch_um", plan.rotary.encoder_pitch_um);
+  } else {
+    complaint.least_one("rotary.encoder_lines", plan.rotary.encoder_lines);
+  }
   complaint.unless(plan.rotary.interpolation_bits <= 63, "rotary.interpolation_bits", "must be 0 to 63");
   complaint.least_one("rotary.gear_encoder_turns", plan.rotary.gear_encoder_turns);
   complaint.least_one("rotary.gear_workpiece_turns", plan.rotary.gear_workpiece_turns);
-  complaint.least_one("ab.prescaler", plan.ab.prescaler);
-  complaint.least_one("ab.fraction.den", plan.ab.fraction_den);
-  complaint.unless(plan.ab.counter_bits >= 2 && plan.ab.counter_bits <= 64, "ab.counter_bits", "must be 2 to 64");
-  complaint.positive("ab.seam_limit_um", plan.ab.seam_limit_um);
+  check_counter(plan.ab, "ab.", complaint);
   complaint.least_one("job.revolutions", plan.job.revolutions);
+  complaint.unless(plan.carriage.has_value() == (plan.mode == Mode::helical), "carriage",
+                   "must be there in helical mode, and in no other");
+  complaint.unless(!plan.bands || plan.mode != Mode::helical, "bands", "are none in helical mode");
+  if (plan.carriage) {
+    complaint.positive("carriage.feed_pixels", plan.carriage->feed_pixels);
+    complaint.least_one("carriage.layers", plan.carriage->layers);
+    complaint.least_one("carriage.columns", plan.carriage->columns);
+    complaint.positive("carriage.encoder_pitch_um", plan.carriage->encoder_pitch_um);
+    complaint.unless(plan.carriage->interpolation_bits <= 63, "carriage.interpolation_bits", "must be 0 to 63");
+    check_counter(plan.carriage->ab, "carriage.ab.", complaint);
+  }
 }
 
 void check_clock(const ClockPlan& clock, Complaint& complaint) {
@@ -90,57 +111,102 @@ void check_rotary(const Plan& plan, Complaint& complaint) {
                   rotary.circumference_um / Rational(rotary.lines_per_revolution));
   complaint.equal("rotary.ticks_per_revolution", rotary.ticks_per_revolution,
                   Integer(plan.line.ticks) * rotary.lines_per_revolution);
-  complaint.equal("rotary.rpm", rotary.rpm, revolutions_per_second * Rational(60));
+  complaint.equal("rotary.rpm", rotary.rpm,
+                  plan.mode == Mode::flat ? Rational(0) : revolutions_per_second * Rational(60));
   complaint.equal("rotary.surface_speed_mm_s", rotary.surface_speed_mm_s,
                   revolutions_per_second * rotary.circumference_um / Rational(1000));
+  const Rational interpolated = Integer(4) << static_cast<unsigned>(rotary.interpolation_bits);
   complaint.equal("rotary.edges_per_revolution", rotary.edges_per_revolution,
-                  ratio((Integer(4) << static_cast<unsigned>(rotary.interpolation_bits)) * rotary.encoder_lines *
-                            rotary.gear_encoder_turns,
-                        rotary.gear_workpiece_turns));
+                  plan.mode == Mode::flat
+                      ? interpolated * rotary.circumference_um / rotary.encoder_pitch_um
+                      : interpolated * ratio(Integer(rotary.encoder_lines) * rotary.gear_encoder_turns,
+                                             rotary.gear_workpiece_turns));
   complaint.equal("job.ticks", plan.job.ticks, Integer(rotary.ticks_per_revolution) * plan.job.revolutions);
   complaint.equal("job.duration_s", plan.job.duration_s, ratio(plan.job.ticks, plan.clock.fpga_hz));
 }
 
-void check_frequencies(const Plan& plan, Complaint& complaint) {
-  const AbPlan& ab = plan.ab;
+void check_carriage(const Plan& plan, Complaint& complaint) {
+  const CarriagePlan& carriage = *plan.carriage;
+  const Rational revolutions_per_second = plan.line.rate_hz / Rational(plan.rotary.lines_per_revolution);
+  complaint.unless(ExposureMap::fits(carriage.feed_pixels, plan.rotary.lines_per_revolution), "carriage.feed_pixels",
+                   "is, over the lines of a revolution, a ratio beyond 62-bit integers");
+  complaint.equal("carriage.feed_um", carriage.feed_um, carriage.feed_pixels * plan.line.pixel_pitch_um);
+  complaint.equal("carriage.window_columns", carriage.window_columns,
+                  ceil_of(carriage.feed_pixels * Rational(carriage.layers)));
+  complaint.equal("line.pixels", plan.line.pixels, carriage.window_columns);
+  complaint.equal("carriage.revolutions", carriage.revolutions,
+                  ceil_of(Rational(carriage.columns) / carriage.feed_pixels) + carriage.layers);
+  complaint.equal("job.revolutions", plan.job.revolutions, carriage.revolutions);
+  complaint.equal("carriage.travel_mm", carriage.travel_mm,
+                  carriage.feed_um * Rational(carriage.revolutions) / Rational(1000));
+  complaint.equal("carriage.speed_mm_s", carriage.speed_mm_s,
+                  revolutions_per_second * carriage.feed_um / Rational(1000));
+  complaint.equal("carriage.edges_per_revolution", carriage.edges_per_revolution,
+                  Rational(Integer(4) << static_cast<unsigned>(carriage.interpolation_bits)) * carriage.feed_um /
+                      carriage.encoder_pitch_um);
+}
+
+void check_bands(const Plan& plan, Complaint& complaint) {
+  const BandsPlan& bands = *plan.bands;
+  complaint.least_one("bands.revolutions_per_band", bands.revolutions_per_band);
+  complaint.unless(bands.columns > plan.line.pixels, "bands.columns", "fit one band");
+  complaint.equal("bands.count", bands.count, ceil_of(ratio(bands.columns, plan.line.pixels)));
+  complaint.equal("job.revolutions", plan.job.revolutions, Integer(bands.count) * bands.revolutions_per_band);
+}
+
+/// What a channel is held against: its place in the plan, and what its axis does in a revolution.
+struct Channel {
+  const AbPlan& ab;
+  std::string section;
+  Rational edges_per_revolution;
+  Rational travel_um;
+};
+
+void check_frequencies(const Plan& plan, const Channel& channel, Complaint& complaint) {
+  const AbPlan& ab = channel.ab;
   const Integer full = Integer(1) << static_cast<unsigned>(ab.counter_bits);
   const Rational per_clock =
       (Rational(ab.increment) + Rational(Integer(ab.fraction_num), Integer(ab.fraction_den))) / Rational(ab.prescaler);
-  complaint.unless(ab.fraction_num < ab.fraction_den, "ab.fraction.num", "must be less than ab.fraction.den");
-  complaint.unless(Integer(ab.increment) + (ab.fraction_num > 0 ? 1 : 0) <= full / 4, "ab.increment",
+  complaint.unless(ab.fraction_num < ab.fraction_den, channel.section + "fraction.num",
+                   "must be less than ab.fraction.den");
+  complaint.unless(Integer(ab.increment) + (ab.fraction_num > 0 ? 1 : 0) <= full / 4, channel.section + "increment",
                    "lets A and B change together: increment and carry must be at most 2^(n-2)");
-  complaint.unless(per_clock > 0, "ab.increment", "= 0: the axis would stand still");
+  complaint.unless(per_clock > 0, channel.section + "increment", "= 0: the axis would stand still");
   complaint.equal(
-      "ab.wanted_hz", ab.wanted_hz,
-      plan.line.rate_hz / Rational(plan.rotary.lines_per_revolution) * plan.rotary.edges_per_revolution / Rational(4));
-  complaint.equal("ab.output_hz", ab.output_hz, per_clock * Rational(plan.clock.fpga_hz) / Rational(full));
-  complaint.unless(ab.output_hz <= Rational(ab.max_output_hz), "ab.output_hz", "is above ab.max_output_hz");
-  complaint.equal("ab.wanted_increment", ab.wanted_increment,
+      channel.section + "wanted_hz", ab.wanted_hz,
+      plan.line.rate_hz / Rational(plan.rotary.lines_per_revolution) * channel.edges_per_revolution / Rational(4));
+  complaint.equal(channel.section + "output_hz", ab.output_hz,
+                  per_clock * Rational(plan.clock.fpga_hz) / Rational(full));
+  complaint.unless(ab.output_hz <= Rational(ab.max_output_hz), channel.section + "output_hz",
+                   "is above ab.max_output_hz");
+  complaint.equal(channel.section + "wanted_increment", ab.wanted_increment,
                   ab.wanted_hz * Rational(full) / Rational(plan.clock.fpga_hz));
 }
 
-void check_drift(const Plan& plan, Complaint& complaint) {
-  const AbPlan& ab = plan.ab;
+void check_drift(const Plan& plan, const Channel& channel, Complaint& complaint) {
+  const AbPlan& ab = channel.ab;
+  const Rational travel_per_line_um = channel.travel_um / Rational(plan.rotary.lines_per_revolution);
   const Rational relative = ab.output_hz / ab.wanted_hz - Rational(1);
-  const Rational limit_lines = ab.seam_limit_um / plan.rotary.line_pitch_um;
-  complaint.unless(ab.exact == (relative == 0), "ab.exact", "does not follow from output_hz and wanted_hz");
-  complaint.equal("ab.drift_lines_per_revolution", ab.drift_lines_per_revolution,
+  const Rational limit_lines = ab.seam_limit_um / travel_per_line_um;
+  complaint.unless(ab.exact == (relative == 0), channel.section + "exact",
+                   "does not follow from output_hz and wanted_hz");
+  complaint.equal(channel.section + "drift_lines_per_revolution", ab.drift_lines_per_revolution,
                   relative * Rational(plan.rotary.lines_per_revolution));
-  complaint.equal("ab.drift_um_per_revolution", ab.drift_um_per_revolution,
-                  ab.drift_lines_per_revolution * plan.rotary.line_pitch_um);
-  complaint.unless(ab.lines_until_limit.has_value() == !ab.exact, "ab.lines_until_limit",
+  complaint.equal(channel.section + "drift_um_per_revolution", ab.drift_um_per_revolution,
+                  ab.drift_lines_per_revolution * travel_per_line_um);
+  complaint.unless(ab.lines_until_limit.has_value() == !ab.exact, channel.section + "lines_until_limit",
                    "must be null for an exact ratio, and for no other");
-  complaint.unless(ab.revolutions_until_limit.has_value() == !ab.exact, "ab.revolutions_until_limit",
+  complaint.unless(ab.revolutions_until_limit.has_value() == !ab.exact, channel.section + "revolutions_until_limit",
                    "must be null for an exact ratio, and for no other");
   if (!complaint.none()) {
     return;
   }
   if (!ab.exact) {
-    complaint.equal("ab.lines_until_limit", *ab.lines_until_limit, ceil_of(limit_lines / abs(relative)));
-    complaint.equal("ab.revolutions_until_limit", *ab.revolutions_until_limit,
+    complaint.equal(channel.section + "lines_until_limit", *ab.lines_until_limit, ceil_of(limit_lines / abs(relative)));
+    complaint.equal(channel.section + "revolutions_until_limit", *ab.revolutions_until_limit,
                     ceil_of(Rational(*ab.lines_until_limit, Integer(plan.rotary.lines_per_revolution))));
   }
-  complaint.equal("ab.bound_lines_until_limit", ab.bound_lines_until_limit,
+  complaint.equal(channel.section + "bound_lines_until_limit", ab.bound_lines_until_limit,
                   floor_of(Rational(2) * Rational(ab.increment) * limit_lines));
 }
 
@@ -157,8 +223,20 @@ Result<void> check_plan(const Plan& plan) {
   part([&] { check_clock(plan.clock, complaint); });
   part([&] { check_line(plan, complaint); });
   part([&] { check_rotary(plan, complaint); });
-  part([&] { check_frequencies(plan, complaint); });
-  part([&] { check_drift(plan, complaint); });
+  if (plan.carriage) {
+    part([&] { check_carriage(plan, complaint); });
+  }
+  if (plan.bands) {
+    part([&] { check_bands(plan, complaint); });
+  }
+  const auto channel = [&](const Channel& its) {
+    part([&] { check_frequencies(plan, its, complaint); });
+    part([&] { check_drift(plan, its, complaint); });
+  };
+  channel({plan.ab, "ab.", plan.rotary.edges_per_revolution, plan.rotary.circumference_um});
+  if (plan.carriage) {
+    channel({plan.carriage->ab, "carriage.ab.", plan.carriage->edges_per_revolution, plan.carriage->feed_um});
+  }
   return complaint.result();
 }
 

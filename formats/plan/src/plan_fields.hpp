@@ -49,6 +49,19 @@ void describe_rotary(Archive& archive, P& rotary) {
   archive.field("edges_per_revolution", rotary.edges_per_revolution);
 }
 
+/// The axis part of a flat plan: a pass is what a revolution is elsewhere.
+template <class Archive, class P>
+void describe_stage(Archive& archive, P& rotary) {
+  archive.field("lines", rotary.lines_per_revolution);
+  archive.field("line_pitch_um", rotary.line_pitch_um);
+  archive.field("ticks_per_pass", rotary.ticks_per_revolution);
+  archive.field("length_um", rotary.circumference_um);
+  archive.field("speed_mm_s", rotary.surface_speed_mm_s);
+  archive.field("encoder_pitch_um", rotary.encoder_pitch_um);
+  archive.field("interpolation_bits", rotary.interpolation_bits);
+  archive.field("edges_per_pass", rotary.edges_per_revolution);
+}
+
 template <class Archive, class P>
 void describe_ab(Archive& archive, P& ab) {
   archive.field("prescaler", ab.prescaler);
@@ -72,6 +85,29 @@ void describe_ab(Archive& archive, P& ab) {
 }
 
 template <class Archive, class P>
+void describe_carriage(Archive& archive, P& carriage) {
+  archive.field("feed_pixels", carriage.feed_pixels);
+  archive.field("feed_um", carriage.feed_um);
+  archive.field("layers", carriage.layers);
+  archive.field("window_columns", carriage.window_columns);
+  archive.field("revolutions", carriage.revolutions);
+  archive.section("ab", [&] { describe_ab(archive, carriage.ab); });
+  archive.field("columns", carriage.columns);
+  archive.field("travel_mm", carriage.travel_mm);
+  archive.field("speed_mm_s", carriage.speed_mm_s);
+  archive.field("encoder_pitch_um", carriage.encoder_pitch_um);
+  archive.field("interpolation_bits", carriage.interpolation_bits);
+  archive.field("edges_per_revolution", carriage.edges_per_revolution);
+}
+
+template <class Archive, class P>
+void describe_bands(Archive& archive, P& bands) {
+  archive.field("count", bands.count);
+  archive.field("columns", bands.columns);
+  archive.field("revolutions_per_band", bands.revolutions_per_band);
+}
+
+template <class Archive, class P>
 void describe_job(Archive& archive, P& job) {
   archive.field("revolutions", job.revolutions);
   archive.field("ticks", job.ticks);
@@ -84,8 +120,14 @@ void describe_plan(Archive& archive, P& plan) {
   archive.field("mode", plan.mode);
   archive.section("clock", [&] { describe_clock(archive, plan.clock); });
   archive.section("line", [&] { describe_line(archive, plan.line); });
-  archive.section("rotary", [&] { describe_rotary(archive, plan.rotary); });
+  if (plan.mode == Mode::flat) {
+    archive.section("stage", [&] { describe_stage(archive, plan.rotary); });
+  } else {
+    archive.section("rotary", [&] { describe_rotary(archive, plan.rotary); });
+  }
   archive.section("ab", [&] { describe_ab(archive, plan.ab); });
+  archive.optional_section("carriage", plan.carriage, [&](auto& carriage) { describe_carriage(archive, carriage); });
+  archive.optional_section("bands", plan.bands, [&](auto& bands) { describe_bands(archive, bands); });
   archive.section("job", [&] { describe_job(archive, plan.job); });
   archive.field("warnings", plan.warnings);
 }

@@ -11,7 +11,7 @@ struct ModeName {
   Mode mode;
   std::string_view name;
 };
-inline constexpr ModeName kModeNames[] = {{Mode::rotary, "rotary"}};
+inline constexpr ModeName kModeNames[] = {{Mode::rotary, "rotary"}, {Mode::helical, "helical"}, {Mode::flat, "flat"}};
 
 /// 2^53: up to it every integer is a double, so every JSON reader keeps it.
 inline constexpr std::int64_t kLargestJsonInteger = std::int64_t{1} << 53;

@@ -45,6 +45,14 @@ class PlanReader {
     stack_.pop_back();
   }
 
+  template <class T, class Describe>
+  void optional_section(const char* key, std::optional<T>& value, const Describe& describe) {
+    value.reset();
+    if (!error_ && stack_.back().object->contains(key)) {
+      section(key, [&] { describe(value.emplace()); });
+    }
+  }
+
   const std::optional<Error>& error() const { return error_; }
 
  private:

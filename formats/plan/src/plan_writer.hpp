@@ -38,6 +38,13 @@ class PlanWriter {
     here()[key] = std::move(done.object);
   }
 
+  template <class T, class Describe>
+  void optional_section(const char* key, const std::optional<T>& value, const Describe& describe) {
+    if (value) {
+      section(key, [&] { describe(*value); });
+    }
+  }
+
   const Json& result() const { return stack_.front().object; }
 
  private:

@@ -47,12 +47,18 @@ Result<void> BoardHost::write_axis(const DeviceSetup& setup) {
   GRAVURE_CHECK(write(fpga::kIncrementRegister, setup.increment));
   GRAVURE_CHECK(write(fpga::kPrescalerRegister, setup.prescaler));
   GRAVURE_CHECK(write(fpga::kFractionNumRegister, setup.fraction_num));
-  return write(fpga::kFractionDenRegister, setup.fraction_den);
+  GRAVURE_CHECK(write(fpga::kFractionDenRegister, setup.fraction_den));
+  if (setup.carriage.fraction_num != 0) {
+    return refusal("carriage.fraction_num = " + std::to_string(setup.carriage.fraction_num) +
+                   ": its second axis has no fraction; set fpga.fractional = false");
+  }
+  GRAVURE_CHECK(write(fpga::kIncrement1Register, setup.carriage.increment));
+  return write(fpga::kPrescaler1Register, setup.carriage.prescaler);
 }
 
 Result<void> BoardHost::start_axis(const DeviceSetup& setup) {
-  constexpr std::uint64_t kEnable = 2;
-  constexpr std::uint64_t kLoad = 2;
+  constexpr std::uint64_t kEnable = 2U | 8U;
+  constexpr std::uint64_t kLoad = 2U | 16U;
   fpga::Synchro::Inputs reset;
   reset.rst = true;
   GRAVURE_CHECK(wires_(reset, 4 * kSeedClock));
@@ -62,7 +68,7 @@ Result<void> BoardHost::start_axis(const DeviceSetup& setup) {
 }
 
 Result<void> BoardHost::start_lines(const DeviceSetup& setup, std::int64_t slots_per_microvector) {
-  constexpr std::uint64_t kRunEnableTimed = 1U | 2U | 16U;
+  constexpr std::uint64_t kRunEnableTimed = 1U | 2U | 8U | 16U;
   constexpr std::uint64_t kAcknowledge = 1;
   constexpr std::uint64_t kPositionAndGo = 8U | 64U;
   const auto bytes = static_cast<std::uint64_t>((setup.window_slots + 7) / 8);

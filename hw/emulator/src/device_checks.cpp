@@ -41,25 +41,28 @@ class Refusals {
   std::string text_;
 };
 
-void check_counter(const DeviceSetup& setup, Refusals& refusals) {
-  refusals.range("counter_bits", setup.counter_bits, kMinCounterBits, fpga::kMaxCounterBits);
-  if (setup.prescaler == 0) {
-    refusals.add("prescaler", "0", "1 or more");
+/// `prefix` is that of the fields of a channel; `registers` are its values.
+void check_counter(const std::string& prefix, const fpga::AbRegisters& registers, Refusals& refusals) {
+  if (registers.prescaler == 0) {
+    refusals.add(prefix + "prescaler", "0", "1 or more");
   }
-  if (setup.fraction_den == 0) {
-    refusals.add("fraction_den", "0", "1 or more", "0/1 turns the fraction off");
-  } else if (setup.fraction_num >= setup.fraction_den) {
-    refusals.add("fraction_num", std::to_string(setup.fraction_num), "0 to " + std::to_string(setup.fraction_den - 1),
-                 "put whole counts into the increment");
+  if (registers.fraction_den == 0) {
+    refusals.add(prefix + "fraction_den", "0", "1 or more", "0/1 turns the fraction off");
+  } else if (registers.fraction_num >= registers.fraction_den) {
+    refusals.add(prefix + "fraction_num", std::to_string(registers.fraction_num),
+                 "0 to " + std::to_string(registers.fraction_den - 1), "put whole counts into the increment");
   }
-  if (!refusals.empty()) {
-    return;
-  }
-  const fpga::AbRegisters registers = ab_registers_of(setup);
-  if (fpga::check(registers) != fpga::AbRefusal::none) {
-    refusals.add("increment", std::to_string(setup.increment), "0 to " + std::to_string(fpga::max_increment(registers)),
+  if (refusals.empty() && fpga::check(registers) != fpga::AbRefusal::none) {
+    refusals.add(prefix + "increment", std::to_string(registers.increment),
+                 "0 to " + std::to_string(fpga::max_increment(registers)),
                  "more would move A and B together: lower the prescaler or the axis speed");
   }
+}
+
+void check_counters(const DeviceSetup& setup, Refusals& refusals) {
+  refusals.range("counter_bits", setup.counter_bits, kMinCounterBits, fpga::kMaxCounterBits);
+  check_counter("", ab_registers_of(setup), refusals);
+  check_counter("carriage.", carriage_registers_of(setup), refusals);
 }
 
 void check_line(const DeviceSetup& setup, Refusals& refusals) {
@@ -107,9 +110,17 @@ fpga::AbRegisters ab_registers_of(const DeviceSetup& setup) noexcept {
           .fraction_den = setup.fraction_den};
 }
 
+fpga::AbRegisters carriage_registers_of(const DeviceSetup& setup) noexcept {
+  return {.bits = setup.counter_bits,
+          .prescaler = setup.carriage.prescaler,
+          .increment = setup.carriage.increment,
+          .fraction_num = setup.carriage.fraction_num,
+          .fraction_den = setup.carriage.fraction_den};
+}
+
 Result<void> check_setup(const DeviceSetup& setup) {
   Refusals refusals;
-  check_counter(setup, refusals);
+  check_counters(setup, refusals);
   check_line(setup, refusals);
   check_job(setup, refusals);
   return refusals.result();

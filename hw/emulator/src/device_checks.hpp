@@ -9,6 +9,9 @@ namespace gravure::emulator {
 /// The A-B registers of a setup. Its counter_bits must be in range.
 fpga::AbRegisters ab_registers_of(const DeviceSetup& setup) noexcept;
 
+/// Those of its second channel.
+fpga::AbRegisters carriage_registers_of(const DeviceSetup& setup) noexcept;
+
 /// device, with one line for each register that the board would not take as it is.
 Result<void> check_setup(const DeviceSetup& setup);
 

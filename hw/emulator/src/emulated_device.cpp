@@ -43,6 +43,7 @@ Result<void> EmulatedDevice::configure(const DeviceSetup& setup) {
   fired_.assign(fpga::packed_bytes(static_cast<std::uint32_t>(setup.window_slots)), std::byte{0});
   setup_ = setup;
   ab_ = ab_registers_of(setup);
+  carriage_ = carriage_registers_of(setup);
   ticks_per_line_ = setup.slots_per_line * setup.ticks_per_slot;
   revolution_ = setup.first_revolution;
   line_ = setup.first_line;
@@ -98,7 +99,8 @@ void EmulatedDevice::run_line(const LineFrame& frame, bool dark) {
                         .ordinal = ordinal_,
                         .first_slot = dark ? 0 : frame.first_slot,
                         .fired = fired_,
-                        .axis_at_start = axis_after(ab_, tick)});
+                        .axis_at_start = axis_after(ab_, tick),
+                        .carriage_at_start = axis_after(carriage_, tick)});
   }
   ++ordinal_;
   if (++line_ == setup_.lines_per_revolution) {
@@ -157,10 +159,12 @@ DeviceStatus EmulatedDevice::status() const {
   DeviceStatus status{.lines_executed = lines_executed_,
                       .tick = ordinal_ * ticks_per_line_,
                       .axis = {},
+                      .carriage = {},
                       .fault = fault_,
                       .detail = detail_};
   if (configured_) {
     status.axis = axis_after(ab_, status.tick);
+    status.carriage = axis_after(carriage_, status.tick);
   }
   return status;
 }

@@ -55,6 +55,53 @@ TEST(EmulatedDeviceAxis, EqualsTheCounterClockByClock) {
   }
 }
 
+/// The second channel is a counter like the first, with registers of its own.
+TEST(EmulatedDeviceAxis, CarriageIsTheSecondChannel) {
+  std::mt19937_64 rng(2);
+  for (int trial = 0; trial < 50; ++trial) {
+    DeviceSetup setup = random_setup(rng);
+    const DeviceSetup other = random_setup(rng);
+    setup.counter_bits = other.counter_bits;
+    setup.increment = 1;
+    setup.carriage = {other.prescaler, other.increment, other.fraction_num, other.fraction_den};
+    DeviceSetup alone = setup;
+    alone.prescaler = other.prescaler;
+    alone.increment = other.increment;
+    alone.fraction_num = other.fraction_num;
+    alone.fraction_den = other.fraction_den;
+    Recorder both;
+    Recorder first;
+    EmulatedDevice device(&both);
+    EmulatedDevice reference(&first);
+    ASSERT_TRUE(device.configure(setup));
+    ASSERT_TRUE(reference.configure(alone));
+    for (std::int64_t ordinal = 0; ordinal < 12; ++ordinal) {
+      ASSERT_TRUE(send(device, ordinal / 4, ordinal % 4));
+      ASSERT_TRUE(send(reference, ordinal / 4, ordinal % 4));
+      ASSERT_EQ(both.lines.back().carriage.edges, first.lines.back().axis.edges);
+      ASSERT_EQ(both.lines.back().carriage.counts_low, first.lines.back().axis.counts_low);
+    }
+    ASSERT_EQ(device.status().carriage.edges, reference.status().axis.edges);
+  }
+}
+
+TEST(EmulatedDeviceAxis, CarriageStandsStillUnlessAsked) {
+  Recorder recorder;
+  EmulatedDevice device(&recorder);
+  ASSERT_TRUE(device.configure(small_setup()));
+  ASSERT_TRUE(send(device, 0, 0));
+  EXPECT_EQ(device.status().carriage.edges, 0U);
+}
+
+TEST(EmulatedDeviceAxis, CarriageRegistersAreChecked) {
+  EmulatedDevice device;
+  DeviceSetup setup = small_setup();
+  setup.carriage.increment = (1U << 14U) + 1;
+  test::expect_refused(device.configure(setup), {"the board refuses carriage.increment = 16385"});
+  setup.carriage = {0, 5, 0, 1};
+  test::expect_refused(device.configure(setup), {"carriage.prescaler = 0"});
+}
+
 void expect_same(const AxisState& a, const AxisState& b) {
   EXPECT_EQ(a.edges, b.edges);
   EXPECT_EQ(a.counts_high, b.counts_high);

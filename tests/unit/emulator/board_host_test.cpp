@@ -33,6 +33,7 @@ class BoardHostOnModel : public testing::Test {
   Result<void> hold(const fpga::Synchro::Inputs& inputs, std::uint64_t clocks) {
     board_.run(inputs, clocks, [this](const fpga::SynchroEvents::Event& now) {
       edges_ += now.axes[0] == before_.axes[0] ? 0 : 1;
+      carriage_edges_ += now.axes[1] == before_.axes[1] ? 0 : 1;
       if (now.gate && !before_.gate) {
         openings_.push_back({now.clock, 0});
       } else if (!now.gate && before_.gate) {
@@ -46,6 +47,7 @@ class BoardHostOnModel : public testing::Test {
   fpga::SynchroEvents::Event before_;
   std::vector<Opening> openings_;
   std::uint64_t edges_ = 0;
+  std::uint64_t carriage_edges_ = 0;
   BoardHost host_{kRtlFifoBits,
                   [this](const fpga::Synchro::Inputs& inputs, std::uint64_t clocks) { return hold(inputs, clocks); }};
 };
@@ -80,14 +82,17 @@ TEST_F(BoardHostOnModel, OpensTheGateForTheSlotsOfEveryLine) {
   }
 }
 
-TEST_F(BoardHostOnModel, RunsTheAxisAlone) {
-  const DeviceSetup setup = board_setup();
+TEST_F(BoardHostOnModel, RunsTheAxesAlone) {
+  DeviceSetup setup = board_setup();
+  setup.carriage = {.prescaler = 3, .increment = 123'456'789};
   ASSERT_TRUE(host_.start_axis(setup));
   constexpr std::uint64_t kClocks = 100'000;
   constexpr auto kLoad = static_cast<std::uint64_t>(fpga::AbGenerator::load_latency(fpga::Synchro::kAxisWidths));
   ASSERT_TRUE(host_.wait(kClocks + kLoad + 1));
   const fpga::AbRegisters registers{32, setup.prescaler, setup.increment, setup.fraction_num, setup.fraction_den};
   EXPECT_EQ(edges_, fpga::position_after(registers, kClocks).edges);
+  const fpga::AbRegisters carriage{32, 3, 123'456'789, 0, 1};
+  EXPECT_EQ(carriage_edges_, fpga::position_after(carriage, kClocks).edges);
 }
 
 TEST_F(BoardHostOnModel, RefusesWhatDoesNotFitTheBoard) {
@@ -99,6 +104,7 @@ TEST_F(BoardHostOnModel, RefusesWhatDoesNotFitTheBoard) {
   refused([](DeviceSetup& setup) { setup.counter_bits = 31; }, "counter_bits = 31");
   refused([](DeviceSetup& setup) { setup.fraction_den = std::uint64_t{1} << 34U; }, "fraction_den = 17179869184");
   refused([](DeviceSetup& setup) { setup.increment = (1U << 30U) + 1; }, "increment = 1073741825");
+  refused([](DeviceSetup& setup) { setup.carriage = {1, 5, 1, 2}; }, "carriage.fraction_num = 1: its second axis");
   refused([](DeviceSetup& setup) { setup.ticks_per_slot = 3; }, "ticks_per_slot = 3");
   refused([](DeviceSetup& setup) { setup.slots_per_line = 70'000; }, "slots_per_line = 70000");
   refused([](DeviceSetup& setup) { setup.window_slots = setup.slots_per_line = 20'000; }, "FIFO of 4096 bytes");

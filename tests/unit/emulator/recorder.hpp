@@ -19,6 +19,7 @@ class Recorder final : public PinObserver {
     std::int64_t first_slot = 0;
     std::vector<std::byte> fired;
     AxisState axis;
+    AxisState carriage;
     bool dark() const {
       for (const std::byte byte : fired) {
         if (byte != std::byte{0}) {
@@ -29,8 +30,12 @@ class Recorder final : public PinObserver {
     }
   };
   void on_line(const ExecutedLine& line) override {
-    lines.push_back(
-        {line.start_tick, line.ordinal, line.first_slot, {line.fired.begin(), line.fired.end()}, line.axis_at_start});
+    lines.push_back({line.start_tick,
+                     line.ordinal,
+                     line.first_slot,
+                     {line.fired.begin(), line.fired.end()},
+                     line.axis_at_start,
+                     line.carriage_at_start});
   }
   std::vector<Line> lines;
 };

@@ -214,6 +214,30 @@ TEST(StarterJob, ParsesAndNeedsTheStatedImage) {
   EXPECT_EQ((kStarterPixels + result.value().scanner.turn_slots) % result.value().scanner.slots_per_microvector, 0);
 }
 
+TEST(StarterJob, OfEveryModeParsesAndNeedsTheSameImages) {
+  for (const Mode mode : {Mode::rotary, Mode::helical, Mode::flat}) {
+    const Result<Job> result = parse_job(starter_job(mode), "job.toml");
+    ASSERT_TRUE(result) << result.error().message;
+    const Job& job = result.value();
+    EXPECT_EQ(job.mode, mode);
+    EXPECT_EQ(mode == Mode::flat ? job.stage.lines : job.rotary.lines_per_revolution.value_or(0), kStarterLines);
+    if (mode == Mode::helical) {
+      EXPECT_EQ(job.carriage.layers, kStarterLayers);
+      EXPECT_EQ(job.carriage.feed_pixels, Rational(16));
+      EXPECT_EQ(job.carriage.encoder_pitch_um, Rational(20));
+      EXPECT_EQ(job.carriage.interpolation_bits, 8);
+      EXPECT_EQ(job.carriage.max_ab_hz, 2'000'000);
+    }
+    if (mode == Mode::flat) {
+      EXPECT_EQ(job.stage.line_pitch_um, Rational(8));
+      EXPECT_EQ(job.stage.encoder_pitch_um, Rational(20));
+      EXPECT_EQ(job.stage.interpolation_bits, 8);
+      EXPECT_EQ(job.stage.max_ab_hz, 2'000'000);
+      EXPECT_EQ(job.scanner.field_mm, ratio(3, 10));
+    }
+  }
+}
+
 TEST_F(JobFile, IsReadFromDisk) {
   const std::string path = write(sample_job());
   const Result<Job> result = read_job(path);

@@ -169,11 +169,15 @@ const Refusal kContradictions[] = {
      "revolutions ",
      "[image] revolutions = 100: contradicts levels = 99 (line 34); order = \"sequence\" needs one layer per "
      "revolution; say order = \"cycle\" or \"hold\", or make them equal"},
-    {"ModeOfALaterVersion", "\"rotary\"", "\"helical\"", kBad, "\"helical\"",
-     "[job] mode = \"helical\": this version runs \"rotary\" only; \"helical\", \"flat\", \"freeform\" and \"zones\" "
+    {"ModeOfALaterVersion", "\"rotary\"", "\"zones\"", kBad, "\"zones\"",
+     "[job] mode = \"zones\": this version runs \"rotary\", \"helical\" or \"flat\" only; \"freeform\" and \"zones\" "
      "need a later one"},
+    {"CarriageOfARotaryJob", "[image]", "[carriage]\nlayers = 0\n[image]", kBad, "[carriage]",
+     "[carriage]: only mode = \"helical\" has this section, not mode = \"rotary\": take it out, or set that mode"},
+    {"StageOfARotaryJob", "[image]", "[stage]\nlines = 10\n[image]", kBad, "[stage]",
+     "[stage]: only mode = \"flat\" has this section, not mode = \"rotary\": take it out, or set that mode"},
     {"ModeOfNoVersion", "\"rotary\"", "\"rotery\"", kBad, "\"rotery\"",
-     "[job] mode = \"rotery\": must be \"rotary\"; did you mean \"rotary\"?"},
+     "[job] mode = \"rotery\": must be \"rotary\", \"helical\" or \"flat\"; did you mean \"rotary\"?"},
 };
 INSTANTIATE_TEST_SUITE_P(Contradictions, JobRefusal, testing::ValuesIn(kContradictions), name_of);
 
@@ -359,6 +363,11 @@ TEST(JobRanges, HoldAtBothEndsOfEveryNumber) {
   }
 }
 
+/// The starter job of the mode that has a section.
+std::string job_with(const std::string& section) {
+  return starter_job(section == "carriage" ? Mode::helical : section == "stage" ? Mode::flat : Mode::rotary);
+}
+
 TEST(JobRequired, MissesEveryKeyThatHasNoDefault) {
   int required = 0;
   for (const JobKey& key : job_keys()) {
@@ -366,7 +375,9 @@ TEST(JobRequired, MissesEveryKeyThatHasNoDefault) {
       continue;
     }
     ++required;
-    const std::string text = without_line(sample_job(), key.key + " ");
+    const std::string text = key.section == "carriage" || key.section == "stage"
+                                 ? without_key(job_with(key.section), key.section, key.key)
+                                 : without_line(sample_job(), key.key + " ");
     const Result<Job> result = parse_job(text, "job.toml");
     ASSERT_FALSE(result) << key.key;
     EXPECT_EQ(result.error().code, kBad);
@@ -375,7 +386,65 @@ TEST(JobRequired, MissesEveryKeyThatHasNoDefault) {
               0U)
         << result.error().message;
   }
-  EXPECT_EQ(required, 13);
+  EXPECT_EQ(required, 23);
+}
+
+/// All that a job says wrong of its mode, and nothing else.
+TEST(JobModes, RefuseWhatBelongsToOthers) {
+  const auto refused = [](std::string text, std::string_view from, const std::string& to, const std::string& says) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    const Result<Job> result = parse_job(text, "job.toml");
+    ASSERT_FALSE(result) << says;
+    EXPECT_EQ(result.error().message, "job.toml:" + place_of(text, to) + ": " + says);
+  };
+  refused(
+      starter_job(Mode::flat), "[limits]", "[rotary]\ndiameter_mm = 5\n[limits]",
+      "[rotary]: nothing turns with mode = \"flat\": describe the stage in [stage] instead, or set mode = \"rotary\"");
+  refused(starter_job(Mode::flat), "[limits]", "[carriage]\n[limits]",
+          "[carriage]: only mode = \"helical\" has this section, not mode = \"flat\": take it out, or set that mode");
+  refused(starter_job(Mode::helical), "[limits]", "[stage]\n[limits]",
+          "[stage]: only mode = \"flat\" has this section, not mode = \"helical\": take it out, or set that mode");
+  refused(
+      starter_job(Mode::helical), "lines_along", "revolutions = 3\nlines_along",
+      "[image] revolutions = 3: has no meaning with mode = \"helical\", where [carriage] feed_pixels and layers decide "
+      "what each turn exposes; take it out");
+  refused(starter_job(Mode::helical), "lines_along", "order = \"hold\"\nlines_along",
+          "[image] order = \"hold\": has no meaning with mode = \"helical\", where [carriage] feed_pixels and layers "
+          "decide "
+          "what each turn exposes; take it out");
+}
+
+TEST(JobModes, NeedTheirOwnSections) {
+  const auto without_section = [](std::string text, const std::string& section) {
+    const std::size_t at = text.find("[" + section + "]");
+    return text.erase(at, text.find("\n[", at) + 1 - at);
+  };
+  const Result<Job> helical = parse_job(without_section(starter_job(Mode::helical), "carriage"), "job.toml");
+  ASSERT_FALSE(helical);
+  EXPECT_NE(helical.error().message.find("section [carriage] is missing: it needs feed_pixels, layers, "
+                                         "encoder_pitch_um, interpolation_bits, max_ab_hz"),
+            std::string::npos)
+      << helical.error().message;
+  const Result<Job> flat = parse_job(without_section(starter_job(Mode::flat), "stage"), "job.toml");
+  ASSERT_FALSE(flat);
+  EXPECT_NE(flat.error().message.find("section [stage] is missing: it needs lines, line_pitch_um, encoder_pitch_um, "
+                                      "interpolation_bits, max_ab_hz"),
+            std::string::npos)
+      << flat.error().message;
+}
+
+TEST(JobModes, HelicalDepthMapHasAsManyLevelsAsLayers) {
+  std::string text = starter_job(Mode::helical);
+  const std::string files = "files       = [\"layers/*.tif\"]";
+  text.replace(text.find(files), files.size(), "depth_map = \"map.tif\"\nlevels = 3");
+  const Result<Job> result = parse_job(text, "job.toml");
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().message.find("job.toml:" + place_of(text, "levels = 3") +
+                                        ": [image] levels = 3: contradicts [carriage] layers = 2"),
+            0U)
+      << result.error().message;
 }
 
 }  // namespace

@@ -61,6 +61,14 @@ inline std::string without_line(const std::string& text, std::string_view key) {
   return text.substr(0, found) + text.substr(end);
 }
 
+/// `text` without the line of a key of one section.
+inline std::string without_key(const std::string& text, const std::string& section, const std::string& key) {
+  const std::size_t start = text.find("[" + section + "]");
+  const std::size_t found = text.find("\n" + key + " ", start);
+  EXPECT_LT(found, text.find("\n[", start)) << key;
+  return text.substr(0, found) + text.substr(text.find('\n', found + 1));
+}
+
 /// The sample with one piece of text, which it must contain exactly once, replaced.
 inline std::string sample_with(std::string_view from, std::string_view to) {
   std::string text = sample_job();

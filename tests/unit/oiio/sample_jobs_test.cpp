@@ -52,6 +52,31 @@ TEST(SampleJobs, SmallFitsItsPicturesUprightAndOnTheirSide) {
   expect_sample_fits("small", "columns.toml", 6);
 }
 
+TEST(SampleJobs, SmallFitsItsPicturesInEveryMode) {
+  expect_sample_fits("small", "helical.toml", 6);
+  expect_sample_fits("small", "flat.toml", 6);
+  expect_sample_fits("small", "bands.toml", 6);
+}
+
+TEST(SampleJobs, PanelHasTwoBandsOfItsPictures) {
+  expect_sample_fits("panel", "job.toml", 4);
+  const auto plan = make_plan(sample_job("panel/job.toml"), 5000, 4);
+  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan.value().bands);
+  EXPECT_EQ(plan.value().bands->count, 2);
+}
+
+/// Its pictures take seconds to write.
+TEST(SampleJobs, HelicalRollerIsWiderThanTheFieldAndNeedsOnePass) {
+  const Job job = sample_job("helical_roller/job.toml");
+  const auto plan = make_plan(job, 15'000, 8);
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_TRUE(plan.value().warnings.empty());
+  EXPECT_GT(Rational(15'000) * job.scanner.pixel_pitch_um, *job.scanner.field_mm * 1000);
+  EXPECT_EQ(plan.value().line.pixels, 512);
+  EXPECT_EQ(plan.value().job.revolutions, 243);
+}
+
 TEST(SampleJobs, SmallTakesItsLayersInNaturalOrder) {
   const TempFolder folder;
   for (const auto& set : samples::sample_sets()) {

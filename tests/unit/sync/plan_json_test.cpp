@@ -89,7 +89,41 @@ TEST(PlanJson, SwitchesToStringsAbove2To53) {
   EXPECT_NE(plan_to_json(plan).find("\"bound_lines_until_limit\": \"9007199254740993\","), std::string::npos);
 }
 
-// A comparison of its own, field by field: were one left out of the JSON, reading would leave its default.
+// Comparisons of their own, field by field: were one left out of the JSON, reading would leave its default.
+void expect_equal(const AbPlan& a, const AbPlan& b) {
+  EXPECT_EQ(a.counter_bits, b.counter_bits);
+  EXPECT_EQ(a.prescaler, b.prescaler);
+  EXPECT_EQ(a.increment, b.increment);
+  EXPECT_EQ(a.fraction_num, b.fraction_num);
+  EXPECT_EQ(a.fraction_den, b.fraction_den);
+  EXPECT_EQ(a.wanted_increment, b.wanted_increment);
+  EXPECT_EQ(a.wanted_hz, b.wanted_hz);
+  EXPECT_EQ(a.output_hz, b.output_hz);
+  EXPECT_EQ(a.max_output_hz, b.max_output_hz);
+  EXPECT_EQ(a.exact, b.exact);
+  EXPECT_EQ(a.drift_lines_per_revolution, b.drift_lines_per_revolution);
+  EXPECT_EQ(a.drift_um_per_revolution, b.drift_um_per_revolution);
+  EXPECT_EQ(a.seam_limit_um, b.seam_limit_um);
+  EXPECT_EQ(a.lines_until_limit, b.lines_until_limit);
+  EXPECT_EQ(a.revolutions_until_limit, b.revolutions_until_limit);
+  EXPECT_EQ(a.bound_lines_until_limit, b.bound_lines_until_limit);
+}
+
+void expect_equal(const CarriagePlan& a, const CarriagePlan& b) {
+  EXPECT_EQ(a.feed_pixels, b.feed_pixels);
+  EXPECT_EQ(a.feed_um, b.feed_um);
+  EXPECT_EQ(a.layers, b.layers);
+  EXPECT_EQ(a.columns, b.columns);
+  EXPECT_EQ(a.window_columns, b.window_columns);
+  EXPECT_EQ(a.revolutions, b.revolutions);
+  EXPECT_EQ(a.travel_mm, b.travel_mm);
+  EXPECT_EQ(a.speed_mm_s, b.speed_mm_s);
+  EXPECT_EQ(a.encoder_pitch_um, b.encoder_pitch_um);
+  EXPECT_EQ(a.interpolation_bits, b.interpolation_bits);
+  EXPECT_EQ(a.edges_per_revolution, b.edges_per_revolution);
+  expect_equal(a.ab, b.ab);
+}
+
 void expect_equal(const Plan& a, const Plan& b) {
   EXPECT_EQ(a.title, b.title);
   EXPECT_EQ(a.mode, b.mode);
@@ -120,23 +154,19 @@ void expect_equal(const Plan& a, const Plan& b) {
   EXPECT_EQ(a.rotary.interpolation_bits, b.rotary.interpolation_bits);
   EXPECT_EQ(a.rotary.gear_encoder_turns, b.rotary.gear_encoder_turns);
   EXPECT_EQ(a.rotary.gear_workpiece_turns, b.rotary.gear_workpiece_turns);
+  EXPECT_EQ(a.rotary.encoder_pitch_um, b.rotary.encoder_pitch_um);
   EXPECT_EQ(a.rotary.edges_per_revolution, b.rotary.edges_per_revolution);
-  EXPECT_EQ(a.ab.counter_bits, b.ab.counter_bits);
-  EXPECT_EQ(a.ab.prescaler, b.ab.prescaler);
-  EXPECT_EQ(a.ab.increment, b.ab.increment);
-  EXPECT_EQ(a.ab.fraction_num, b.ab.fraction_num);
-  EXPECT_EQ(a.ab.fraction_den, b.ab.fraction_den);
-  EXPECT_EQ(a.ab.wanted_increment, b.ab.wanted_increment);
-  EXPECT_EQ(a.ab.wanted_hz, b.ab.wanted_hz);
-  EXPECT_EQ(a.ab.output_hz, b.ab.output_hz);
-  EXPECT_EQ(a.ab.max_output_hz, b.ab.max_output_hz);
-  EXPECT_EQ(a.ab.exact, b.ab.exact);
-  EXPECT_EQ(a.ab.drift_lines_per_revolution, b.ab.drift_lines_per_revolution);
-  EXPECT_EQ(a.ab.drift_um_per_revolution, b.ab.drift_um_per_revolution);
-  EXPECT_EQ(a.ab.seam_limit_um, b.ab.seam_limit_um);
-  EXPECT_EQ(a.ab.lines_until_limit, b.ab.lines_until_limit);
-  EXPECT_EQ(a.ab.revolutions_until_limit, b.ab.revolutions_until_limit);
-  EXPECT_EQ(a.ab.bound_lines_until_limit, b.ab.bound_lines_until_limit);
+  expect_equal(a.ab, b.ab);
+  ASSERT_EQ(a.carriage.has_value(), b.carriage.has_value());
+  if (a.carriage) {
+    expect_equal(*a.carriage, *b.carriage);
+  }
+  ASSERT_EQ(a.bands.has_value(), b.bands.has_value());
+  if (a.bands) {
+    EXPECT_EQ(a.bands->count, b.bands->count);
+    EXPECT_EQ(a.bands->columns, b.bands->columns);
+    EXPECT_EQ(a.bands->revolutions_per_band, b.bands->revolutions_per_band);
+  }
   EXPECT_EQ(a.job.revolutions, b.job.revolutions);
   EXPECT_EQ(a.job.ticks, b.job.ticks);
   EXPECT_EQ(a.job.duration_s, b.job.duration_s);
@@ -165,7 +195,16 @@ TEST(PlanJson, ReadsBackRandomPlansOfAnySize) {
     job.rotary.gear_encoder_turns = random.count(1, 100);
     job.rotary.gear_workpiece_turns = random.count(90, 200);
     job.limits.seam_um = ratio(1, random.count(1, 1'000'000));
-    const Result<Plan> plan = make_plan(job, random.count(1, 5000), random.count(1, 1'000'000));
+    job.mode = static_cast<Mode>(random.between(0, 2));
+    job.carriage = {ratio(random.count(1, 100'000), random.count(1, 1009)), random.count(1, 9),
+                    ratio(random.count(1, 1'000'000), 1009), static_cast<int>(random.between(0, 12)), 2'000'000};
+    job.stage = {random.count(1, 100'000), ratio(random.count(1, 100'000), 1009),
+                 ratio(random.count(1, 1'000'000), 1009), static_cast<int>(random.between(0, 12)), 2'000'000};
+    if (random.chance(2) && job.mode != Mode::helical) {
+      job.scanner.field_mm = ratio(random.count(1, 100'000), 1009);
+    }
+    const std::int64_t exposures = job.mode == Mode::helical ? job.carriage.layers : random.count(1, 1000);
+    const Result<Plan> plan = make_plan(job, random.count(1, 5000), exposures);
     if (!plan) {
       continue;
     }
@@ -187,6 +226,75 @@ TEST(PlanJson, ReadsWholeNumbersInBothFormsAndSkipsUnknownKeys) {
   const Result<Plan> plan = plan_from_json(json.dump());
   ASSERT_TRUE(plan) << plan.error().message;
   expect_equal(plan.value(), roller_plan());
+}
+
+TEST(PlanJson, HasTheSectionsOfItsMode) {
+  Job job = roller_job();
+  job.mode = Mode::helical;
+  job.rotary.interpolation_bits = 7;
+  job.carriage = {64, 8, 20, 8, 2'000'000};
+  const ordered_json helical = ordered_json::parse(plan_to_json(planned(job, 15'000, 8)));
+  EXPECT_EQ(helical["mode"], "helical");
+  expect_first_keys(helical["carriage"],
+                    {"feed_pixels", "feed_um", "layers", "window_columns", "revolutions", "ab", "columns"});
+  for (const auto& [key, value] : helical["ab"].items()) {
+    EXPECT_TRUE(helical["carriage"]["ab"].contains(key)) << key;
+  }
+  EXPECT_FALSE(helical.contains("bands"));
+  job.mode = Mode::flat;
+  job.stage = {5000, 8, 20, 8, 2'000'000};
+  job.scanner.field_mm = 30;
+  const ordered_json flat = ordered_json::parse(plan_to_json(planned(job, 5000, 2)));
+  EXPECT_FALSE(flat.contains("rotary") || flat.contains("carriage"));
+  expect_first_keys(flat["stage"], {"lines", "line_pitch_um", "ticks_per_pass", "length_um", "speed_mm_s"});
+  expect_first_keys(flat["bands"], {"count", "columns", "revolutions_per_band"});
+  EXPECT_EQ(flat["bands"]["count"], 2);
+  EXPECT_FALSE(roller_json().contains("bands") || roller_json().contains("carriage"));
+}
+
+TEST(PlanJson, RefusesCarriagesAndBandsThatContradictThePlan) {
+  Job job = roller_job();
+  job.mode = Mode::helical;
+  job.rotary.interpolation_bits = 7;
+  job.carriage = {64, 8, 20, 8, 2'000'000};
+  const ordered_json helical = ordered_json::parse(plan_to_json(planned(job, 15'000, 8)));
+  job.mode = Mode::rotary;
+  job.scanner.field_mm = 30;
+  const ordered_json bands = ordered_json::parse(plan_to_json(planned(job, 5000, 2)));
+  const auto refused = [](ordered_json json, const std::function<void(ordered_json&)>& change,
+                          const std::string& part) {
+    change(json);
+    const Result<Plan> plan = plan_from_json(json.dump());
+    ASSERT_FALSE(plan) << part;
+    EXPECT_EQ(plan.error().code, ErrorCode::bad_file);
+    EXPECT_NE(plan.error().message.find(part), std::string::npos) << plan.error().message;
+  };
+  refused(
+      helical, [](auto& j) { j.erase("carriage"); }, "carriage must be there in helical mode");
+  refused(
+      bands, [&](auto& j) { j["carriage"] = helical["carriage"]; }, "carriage must be there in helical mode");
+  refused(
+      helical, [&](auto& j) { j["bands"] = bands["bands"]; }, "bands are none in helical mode");
+  refused(
+      helical, [](auto& j) { j["carriage"]["layers"] = 7; }, "carriage.window_columns = 512");
+  refused(
+      helical, [](auto& j) { j["carriage"]["layers"] = 0; }, "carriage.layers = 0: must be at least 1");
+  refused(
+      helical, [](auto& j) { j["carriage"]["columns"] = 0; }, "carriage.columns = 0: must be at least 1");
+  refused(
+      helical, [](auto& j) { j["carriage"]["revolutions"] = 242; }, "carriage.revolutions = 242");
+  refused(
+      helical, [](auto& j) { j["carriage"]["ab"]["increment"] = 1; }, "carriage.ab.output_hz");
+  refused(
+      helical, [](auto& j) { j["carriage"]["ab"]["prescaler"] = 0; }, "carriage.ab.prescaler = 0");
+  refused(
+      helical, [](auto& j) { j["carriage"]["interpolation_bits"] = 64; }, "carriage.interpolation_bits");
+  refused(
+      bands, [](auto& j) { j["bands"]["count"] = 3; }, "bands.count = 3");
+  refused(
+      bands, [](auto& j) { j["bands"]["revolutions_per_band"] = 3; }, "job.revolutions = 4");
+  refused(
+      bands, [](auto& j) { j["bands"]["columns"] = 5; }, "bands.columns fit one band");
 }
 
 // --- refusals ---

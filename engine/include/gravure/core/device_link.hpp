@@ -9,6 +9,15 @@
 
 namespace gravure {
 
+/// The second A-B channel, which drives the carriage of helical jobs; its counter is as wide as the first. It stands
+/// still with an increment of 0.
+struct CarriageSetup {
+  std::uint64_t prescaler = 1;
+  std::uint64_t increment = 0;
+  std::uint64_t fraction_num = 0;
+  std::uint64_t fraction_den = 1;
+};
+
 /// What is loaded into the board's registers before a program runs; all integers, all in FPGA ticks or slots.
 struct DeviceSetup {
   int counter_bits = 32;
@@ -16,6 +25,7 @@ struct DeviceSetup {
   std::uint64_t increment = 0;
   std::uint64_t fraction_num = 0;
   std::uint64_t fraction_den = 1;
+  CarriageSetup carriage = {};
   std::int64_t ticks_per_slot = 1;
   std::int64_t slots_per_line = 1;  ///< np
   std::int64_t window_slots = 0;    ///< pixels per line; the gate stays dark outside the window
@@ -51,6 +61,7 @@ struct ExecutedLine {
   std::int64_t first_slot = 0;       ///< of `fired`
   std::span<const std::byte> fired;  ///< window_slots bits, MSB first: what the gate let through
   AxisState axis_at_start;
+  AxisState carriage_at_start = {};
 };
 
 /// Sees the pins of an emulated board (real boards have none to show).
@@ -67,6 +78,7 @@ struct DeviceStatus {
   std::int64_t lines_executed = 0;
   std::int64_t tick = 0;                  ///< ticks since tick 0 of the job
   AxisState axis;                         ///< at that tick
+  AxisState carriage = {};                ///< likewise
   DeviceFault fault = DeviceFault::none;  ///< sticky; the gate is closed while it stands
   std::string detail;                     ///< what was refused and why
 };

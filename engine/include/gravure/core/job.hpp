@@ -15,7 +15,9 @@ namespace gravure {
 /// What the user wants, as the job file says it: values checked one by one, not yet against each other (make_plan
 /// does). docs/formats/job.md explains every field; names and units are those of the file.
 
-enum class Mode : std::uint8_t { rotary };
+enum class Mode : std::uint8_t { rotary, helical, flat };
+/// "rotary", "helical", "flat", as the job file says it.
+std::string_view mode_name(Mode mode);
 
 struct LaserSettings {
   std::int64_t seed_hz = 0;
@@ -37,6 +39,7 @@ struct ScannerSettings {
   std::int64_t max_extra_slots = 0;  ///< slots the planner may add to a line to improve the seam
   bool bidirectional = true;
   std::int64_t bidirectional_offset_ticks = 0;  ///< delay of right-to-left lines in FPGA ticks
+  std::optional<Rational> field_mm;             ///< longest line the scanner can mark; wider images get bands
 };
 
 struct RotarySettings {
@@ -48,6 +51,24 @@ struct RotarySettings {
   int interpolation_bits = 0;           ///< q
   std::int64_t gear_encoder_turns = 1;  ///< encoder turns : workpiece turns
   std::int64_t gear_workpiece_turns = 1;
+  std::int64_t max_ab_hz = 0;
+};
+
+/// Helical mode: the axis that carries the scanner along the workpiece, by the second A-B channel.
+struct CarriageSettings {
+  Rational feed_pixels = 0;       ///< h: columns the carriage advances in a revolution
+  std::int64_t layers = 0;        ///< L: layers of the stack exposed in one pass
+  Rational encoder_pitch_um = 0;  ///< travel of one encoder line
+  int interpolation_bits = 0;     ///< q
+  std::int64_t max_ab_hz = 0;
+};
+
+/// Flat mode: the stage that carries the workpiece across the lines, by the first A-B channel.
+struct StageSettings {
+  std::int64_t lines = 0;  ///< lines of a pass
+  Rational line_pitch_um = 0;
+  Rational encoder_pitch_um = 0;  ///< travel of one encoder line
+  int interpolation_bits = 0;     ///< q
   std::int64_t max_ab_hz = 0;
 };
 
@@ -86,7 +107,9 @@ struct Job {
   LaserSettings laser;
   FpgaSettings fpga;
   ScannerSettings scanner;
-  RotarySettings rotary;
+  RotarySettings rotary;      ///< rotary and helical
+  CarriageSettings carriage;  ///< helical
+  StageSettings stage;        ///< flat
   ImageSettings image;
   Limits limits;
 

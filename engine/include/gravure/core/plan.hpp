@@ -38,14 +38,17 @@ struct LinePlan {
   Rational scan_speed_m_s = 0;  ///< pixel pitch * pulse rate
 };
 
+/// The cross-scan axis. In flat mode it is the stage: a revolution is a pass, the circumference its length, the surface
+/// speed that of the stage.
 struct RotaryPlan {
   std::int64_t lines_per_revolution = 0;  ///< nL
   Rational circumference_um = 0;          ///< as given, or pi (100 decimals) * diameter
   Rational line_pitch_um = 0;             ///< circumference / nL
   std::int64_t ticks_per_revolution = 0;
-  Rational rpm = 0;
+  Rational rpm = 0;  ///< 0 in flat mode
   Rational surface_speed_mm_s = 0;
-  std::int64_t encoder_lines = 0;
+  std::int64_t encoder_lines = 0;  ///< 0 in flat mode
+  Rational encoder_pitch_um = 0;   ///< flat mode alone: travel of one encoder line
   int interpolation_bits = 0;
   std::int64_t gear_encoder_turns = 1;
   std::int64_t gear_workpiece_turns = 1;
@@ -72,6 +75,34 @@ struct AbPlan {
   Integer bound_lines_until_limit = 0;  ///< the published worst case 1/(2 increment), [B] eq. 10
 };
 
+/// Helical mode: what the carriage does while the workpiece turns. With h columns a revolution, nL lines and L layers,
+/// segment s (0 trails, L - 1 leads) of line l of revolution R covers the columns from floor(h (R - L + s + l / nL)) up
+/// to the start of the next segment, and exposes layer L - 1 - s: over all revolutions each segment covers each column
+/// once, so every column gets every layer once, the first layer first.
+struct CarriagePlan {
+  Rational feed_pixels = 0;         ///< h
+  Rational feed_um = 0;             ///< h * pixel pitch, along the axis in a revolution
+  std::int64_t layers = 0;          ///< L
+  std::int64_t columns = 0;         ///< of the images
+  std::int64_t window_columns = 0;  ///< most columns a line exposes, ceil(L h): the pixels of the line
+  /// L of run-in, in which the leading segments come to the first column, and ceil(columns / h).
+  std::int64_t revolutions = 0;
+  Rational travel_mm = 0;  ///< of the carriage over the job
+  Rational speed_mm_s = 0;
+  Rational encoder_pitch_um = 0;
+  int interpolation_bits = 0;
+  Rational edges_per_revolution = 0;  ///< A-B edges per workpiece revolution: 4 * 2^q * feed / encoder pitch
+  AbPlan ab;                          ///< the second channel; its lines and um are those of the carriage's travel
+};
+
+/// An image wider than the scan field, exposed in strips: band b starts at column b * line.pixels, and has all its
+/// revolutions (passes) before the next band begins.
+struct BandsPlan {
+  std::int64_t count = 0;
+  std::int64_t columns = 0;  ///< of the images; the last band may hold fewer than the others, the rest stays dark
+  std::int64_t revolutions_per_band = 0;
+};
+
 struct JobPlan {
   std::int64_t revolutions = 0;
   std::int64_t ticks = 0;
@@ -85,9 +116,21 @@ struct Plan {
   LinePlan line;
   RotaryPlan rotary;
   AbPlan ab;
+  std::optional<CarriagePlan> carriage;  ///< helical mode
+  std::optional<BandsPlan> bands;        ///< none: the image fits the field
   JobPlan job;
   std::vector<std::string> warnings;
 };
+
+/// Columns of the images the plan was made for.
+inline std::int64_t image_columns(const Plan& plan) {
+  return plan.carriage ? plan.carriage->columns : plan.bands ? plan.bands->columns : plan.line.pixels;
+}
+
+/// Revolutions (passes) of each band; of the job, where there is one band.
+inline std::int64_t revolutions_per_band(const Plan& plan) {
+  return plan.bands ? plan.bands->revolutions_per_band : plan.job.revolutions;
+}
 
 /// A line runs right to left? The scanner alternates without a break from the first line of the job to the last, so
 /// with an odd number of lines per revolution the same line of the next revolution runs the other way.

@@ -21,20 +21,29 @@ namespace gravure {
 /// lines_until_limit = ceil(tau/|rel|), revolutions_until_limit = ceil(lines_until_limit / nL) (during that revolution,
 /// counted from 1, the limit is reached), bound_lines_until_limit = floor(2 incr tau), from [B] eq. 10.
 ///
+/// Flat mode: the stage is the axis and a pass is a revolution; each pass starts where the one before ended.
+/// Bands: an image of more columns than scanner.field_mm holds gets as few bands as fit, equally wide but for the last.
+/// Helical mode: window and revolutions as CarriagePlan says; the carriage's channel is solved like the other one, and
+/// of all lengths of line the one with the smallest largest drift in um counts.
+///
+/// `columns`: pixels of a whole image line. `exposures`: rotary and flat, revolutions (passes) of each band; helical,
+/// the layers there are, which must be carriage.layers.
+///
 /// The job's values are checked alone and against each other. Every violation is one line of the error, said once:
 /// "section.key = value: what is wrong; what would fit". The code is that of the first: out_of_range for a value
 /// outside its range or out of reach, bad_argument for values that contradict each other.
 /// What is allowed but worth knowing (drift above the limit within the job, a pitch changed by rounding, ...) is in
 /// Plan::warnings. All tick counts fit std::int64_t.
-Result<Plan> make_plan(const Job& job, std::int64_t pixels_per_line, std::int64_t revolutions);
+Result<Plan> make_plan(const Job& job, std::int64_t columns, std::int64_t exposures);
 
 /// Which layer revolution `revolution` (from 0) exposes. layers >= 1; with LayerOrder::sequence revolution < layers, as
 /// resolve_revolutions() guarantees.
 std::int64_t layer_of_revolution(LayerOrder order, std::int64_t layers, std::int64_t revolution);
 
-/// How many revolutions the job has: as given, else one for each layer. `layers` is empty while the images have not
-/// been looked at; a depth map then counts its levels. bad_argument when neither is known, when there is no layer, or
-/// when LayerOrder::sequence has another number of revolutions than layers (both are named).
+/// How many revolutions each band of the job has, or how many layers a helical job: as given, else one for each layer.
+/// `layers` is empty while the images have not been looked at; a depth map then counts its levels. bad_argument when
+/// neither is known, when there is no layer, or when LayerOrder::sequence has another number of revolutions than layers
+/// (both are named).
 Result<std::int64_t> resolve_revolutions(const Job& job, std::optional<std::int64_t> layers);
 
 }  // namespace gravure

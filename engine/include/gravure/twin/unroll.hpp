@@ -24,9 +24,18 @@ struct UnrolledSize {
 };
 UnrolledSize unrolled_size(const ProgramHeader& header);
 
-/// Runs one revolution on the device and gives what was exposed as the source's picture: its size, orientation and
-/// polarity. Pictures whose lines run along columns are turned in bands that fit the budget, one run a band.
+/// Images the program shows: layers of the stack that are exposed at all.
+std::int64_t image_layers(const ProgramHeader& header);
+
+/// Runs one revolution (pass) on the device, where there are bands that of each, and gives what was exposed as the
+/// source's picture: its size, orientation and polarity. Pictures whose lines run along columns are turned in parts
+/// that fit the budget. bad_argument in helical mode, where no revolution shows a picture.
 Result<void> unroll(LineSource& program, const DeviceFactory& devices, std::int64_t revolution, const RowSink& rows,
                     const UnrollOptions& options);
+
+/// The same for image `layer`, from 0 to image_layers(): in helical mode its segment of all revolutions put together,
+/// in others the first revolution that exposes it.
+Result<void> unroll_layer(LineSource& program, const DeviceFactory& devices, std::int64_t layer, const RowSink& rows,
+                          const UnrollOptions& options);
 
 }  // namespace gravure

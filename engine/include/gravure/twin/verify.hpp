@@ -21,7 +21,18 @@ struct SeamRow {
 struct PixelPlace {
   std::int64_t revolution = 0;
   std::int64_t line = 0;
-  std::int64_t column = 0;
+  std::int64_t column = 0;  ///< pixel of the line
+};
+
+/// The second A-B channel of a helical job: as for the axis below, along the workpiece.
+struct CarriageReport {
+  double ab_step_um = 0;    ///< one A-B edge
+  double error_max_um = 0;  ///< of the line starts, edges against ideal motion
+  std::int64_t worst_revolution = 0;
+  std::int64_t worst_line = 0;
+  double drift_um_per_revolution = 0;
+  double seam_end_um = 0;  ///< drift over the job, with sign
+  std::optional<double> seam_end_measured_um;
 };
 
 struct VerifyReport {
@@ -49,6 +60,8 @@ struct VerifyReport {
   std::int64_t axis_worst_revolution = 0;
   std::int64_t axis_worst_line = 0;
   double ab_step_um = 0;  ///< one A-B edge on the surface
+
+  std::optional<CarriageReport> carriage;  ///< helical jobs
 
   std::int64_t ticks = 0;               ///< the device took
   std::vector<std::string> violations;  ///< each once; empty: within limits

@@ -25,9 +25,10 @@ Result<Job> read_job(const std::string& path);
 /// Decimal numbers are taken from their literals and are exact.
 Result<Job> parse_job(std::string_view text, const std::string& path);
 
-/// A commented job that runs as it is when `layers/` beside it holds one or more bilevel images of kStarterPixels x
+/// A commented job that runs as it is when `layers/` beside it holds kStarterLayers bilevel images of kStarterPixels x
 /// kStarterLines pixels.
-std::string_view starter_job(Mode mode);
+std::string starter_job(Mode mode);
+inline constexpr int kStarterLayers = 2;
 inline constexpr int kStarterPixels = 64;   ///< image width: pixels of one scan line
 inline constexpr int kStarterLines = 1968;  ///< image height: lines of one revolution
 

@@ -18,8 +18,8 @@ class BoardHost {
 
   BoardHost(int fifo_bits, Wires wires) : fifo_bits_(fifo_bits), wires_(std::move(wires)) {}
 
-  /// The A-B registers of channel 0 alone, loaded, and the axis enabled: from now on it runs. device where a value does
-  /// not fit its register.
+  /// The A-B registers of both channels alone, loaded, and the axes enabled: from now on they run. device where a value
+  /// does not fit its register.
   Result<void> start_axis(const DeviceSetup& setup);
   /// Everything a program needs; the first line is that of the setup. The axis starts at 0 with it: boards do not
   /// preset their counters. device as before, and where a line does not fit twice into the FIFO or its frame does not

@@ -16,7 +16,8 @@ namespace gravure::emulator {
 inline constexpr int kMinCounterBits = 8;
 inline constexpr std::int64_t kMaxWindowSlots = fpga::kMaxWindowSlots;
 
-/// A board without the board: the bit-exact FPGA model behind DeviceLink. It refuses what a board would refuse.
+/// A board without the board: the bit-exact FPGA model behind DeviceLink. It refuses what a board would refuse; its
+/// second A-B channel (the carriage) has a fraction, too, which the Verilog as it is built for the HX8K leaves out.
 ///
 /// The machine never waits: every send() takes exactly one line time, in which either the frame's line runs or, where
 /// the frame is refused or a fault stands, a dark one. So tick and axis go on through a fault as they do on a machine.
@@ -66,6 +67,7 @@ class EmulatedDevice final : public DeviceLink {
   bool configured_ = false;
   DeviceSetup setup_;
   fpga::AbRegisters ab_;
+  fpga::AbRegisters carriage_;
   std::int64_t ticks_per_line_ = 0;
   std::vector<std::byte> fired_;
 
