@@ -54,9 +54,10 @@ std::string plan_text(const Plan& plan) {
   row("clock", fmt::format("seed {} Hz, FPGA {} Hz, pulses {} Hz (every seed pulse no. {}), {} ticks a slot",
                            plan.clock.seed_hz, plan.clock.fpga_hz, number(plan.clock.pulse_hz),
                            plan.clock.pulse_divider, plan.clock.ticks_per_slot));
-  row("line",
-      fmt::format("{} pixels in {} slots = {} ticks, {} lines/s, scan speed {} m/s", plan.line.pixels, plan.line.slots,
-                  plan.line.ticks, number(plan.line.rate_hz), number(plan.line.scan_speed_m_s)));
+  row("line", fmt::format("{} pixels in {} slots = {} ticks, {} ticks a microvector, {} lines/s, scan speed {} m/s",
+                          plan.line.pixels, plan.line.slots, plan.line.ticks,
+                          plan.line.slots_per_microvector * plan.clock.ticks_per_slot, number(plan.line.rate_hz),
+                          number(plan.line.scan_speed_m_s)));
   row("window", fmt::format("first slot {} forward, {} reverse{}", plan.line.forward_first_slot,
                             plan.line.reverse_first_slot, plan.line.bidirectional ? "" : " (unused: one direction)"));
   if (plan.bands) {
@@ -99,6 +100,8 @@ void add_plan(CLI::App& app, Command& command) {
       const ImageSettings& image = loaded.job.image;
       if (command.json) {
         Json plan = Json::parse(plan_to_json(loaded.plan));
+        plan["line"]["ticks_per_microvector"] =
+            loaded.plan.line.slots_per_microvector * loaded.plan.clock.ticks_per_slot;
         plan["image"] = {{"fires", polarity_name(image.fires)},
                          {"lines_along", image.lines_along == LinesAlong::rows ? "rows" : "columns"},
                          {"order", order_name(image.order)}};

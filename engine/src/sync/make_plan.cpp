@@ -172,6 +172,14 @@ std::int64_t check_line(const Job& job, std::int64_t pixels_per_line, Plan& plan
   }
   plan_line(job.scanner, pixels_per_line, plan.clock.ticks_per_slot, plan.line);
   const std::int64_t longest_line = longest_line_slots(job.scanner, plan.line);
+  if (longest_line > kMostSlotsPerLine) {
+    violations.refuse(ErrorCode::out_of_range, plan.carriage ? "carriage.feed_pixels" : "image.pixels_per_line",
+                      plan.carriage ? number_text(plan.carriage->feed_pixels) : std::to_string(plan.line.pixels),
+                      "a line takes " + std::to_string(longest_line) +
+                          " slots with turn_slots and max_extra_slots; the "
+                          "board counts " +
+                          std::to_string(kMostSlotsPerLine) + " at most: cut the picture into bands");
+  }
   check_window(job.scanner, plan.line, longest_line, plan.clock.ticks_per_slot, violations);
   if (!violations.sound({"laser.seed_hz"}) || !lines_are_sound(violations)) {
     return longest_line;

@@ -25,25 +25,36 @@ std::string reach_limit(const AxisRequest& axis, const Plan& plan) {
 /// What would bring the wanted frequency down to what can be emitted, each alone.
 std::string what_would_fit(const Job& job, const Plan& plan, const AxisRequest& axis, std::int64_t slots) {
   const Rational excess = wanted_hz(plan, axis, slots) / reachable_hz(axis, plan);
-  std::string text;
+  std::vector<std::string> ways;
   int bits = axis.interpolation_bits;
   for (Rational left = excess; left > 1 && bits >= 0; left /= 2) {
     --bits;
   }
   if (bits >= 0) {
-    text += axis.section + ".interpolation_bits <= " + std::to_string(bits) + ", ";
+    ways.push_back(axis.section + ".interpolation_bits <= " + std::to_string(bits));
+  }
+  if (axis.section != "rotary") {
+    ways.push_back("a " + axis.section + ".encoder_pitch_um of at least " + number_text(axis.scale * excess));
+  } else if (const Rational gear = axis.scale / excess; gear * Rational(kMostCount) >= Rational(1)) {
+    ways.push_back("a rotary.gear ratio of at most " + number_text(gear));
   }
   const Integer least_slots =
       ceil_of(excess * Rational(slots) / Rational(plan.line.slots_per_microvector)) * plan.line.slots_per_microvector;
-  text += axis.section == "rotary"
-              ? "a rotary.gear ratio of at most " + number_text(axis.scale / excess)
-              : "a " + axis.section + ".encoder_pitch_um of at least " + number_text(axis.scale * excess);
-  if (least_slots - plan.line.pixels <= kMostTurnSlots) {
-    text += ", lines of at least " + to_string(least_slots) +
-            " slots (scanner.turn_slots >= " + to_string(Integer(least_slots - plan.line.pixels)) + ")";
+  if (least_slots - plan.line.pixels <= kMostTurnSlots && least_slots <= kMostSlotsPerLine) {
+    ways.push_back("lines of at least " + to_string(least_slots) +
+                   " slots (scanner.turn_slots >= " + to_string(Integer(least_slots - plan.line.pixels)) + ")");
   }
-  text += " or laser.pulse_divider >= " + to_string(ceil_of(excess * Rational(job.laser.pulse_divider))) + " would fit";
-  return text;
+  if (const Integer divider = ceil_of(excess * Rational(job.laser.pulse_divider)); divider <= kMostCount) {
+    ways.push_back("laser.pulse_divider >= " + to_string(divider));
+  }
+  if (ways.empty()) {
+    return "no single key within its range would fit";
+  }
+  std::string text;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == ways.size() ? " or " : ", ") + ways[i];
+  }
+  return text + " would fit";
 }
 
 Result<AbSolution> solve(const Job& job, const Plan& plan, const AxisRequest& axis, std::int64_t slots) {

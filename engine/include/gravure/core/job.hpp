@@ -98,7 +98,9 @@ struct Limits {
 struct TextPlace {
   std::uint32_t line = 0;
   std::uint32_t column = 0;
-  auto operator<=>(const TextPlace&) const = default;
+  bool operator<(const TextPlace& other) const {
+    return line != other.line ? line < other.line : column < other.column;
+  }
 };
 
 struct Job {

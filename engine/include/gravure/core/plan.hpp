@@ -21,6 +21,9 @@ struct ClockPlan {
   std::int64_t ticks_per_slot = 0;  ///< j * k
 };
 
+/// What the board counts of a line, 24 bits; the emulated board refuses more.
+inline constexpr std::int64_t kMostSlotsPerLine = (std::int64_t{1} << 24) - 1;
+
 struct LinePlan {
   std::int64_t pixels = 0;
   std::int64_t slots = 0;  ///< np: run-in + pixels + run-out, whole microvectors
