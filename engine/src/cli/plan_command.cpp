@@ -35,6 +35,11 @@ std::string seam_text(const AbPlan& ab, bool flat) {
   if (ab.exact) {
     return fmt::format("drift 0: exact, for ever (limit {} um)", to_decimal_string(ab.seam_limit_um));
   }
+  if (!ab.lines_until_limit) {
+    return fmt::format("drift {:.6g} um a pass = {} lines, the same in each; limit {} um never reached",
+                       to_double(ab.drift_um_per_revolution), to_string(ab.drift_lines_per_revolution),
+                       to_decimal_string(ab.seam_limit_um));
+  }
   return fmt::format(
       "drift {:.6g} um a {} = {} lines; limit {} um reached after {} {} ({} lines); the published "
       "bound would allow {} lines",

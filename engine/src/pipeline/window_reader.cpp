@@ -178,6 +178,9 @@ void WindowReader::place_strips(std::int64_t revolution, std::int64_t first_line
     strip.offset = offset;
     offset += count * strip.bytes;
   }
+  if (held_.capacity() < size(offset)) {
+    held_ = {};  // not the old panel beside the new one
+  }
   held_.resize(size(offset));
 }
 

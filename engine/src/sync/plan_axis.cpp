@@ -181,8 +181,11 @@ AbPlan ab_plan(const Job& job, const Plan& plan, const AxisRequest& axis, const 
   ab.drift_um_per_revolution = ab.drift_lines_per_revolution * travel_per_line_um;
   ab.seam_limit_um = job.limits.seam_um;
   const Rational limit_lines = ab.seam_limit_um / travel_per_line_um;
-  if (!ab.exact) {
-    ab.lines_until_limit = ceil_of(limit_lines / abs(solution.relative_error));
+  const Integer lines_until_limit = ab.exact ? Integer(0) : ceil_of(limit_lines / abs(solution.relative_error));
+  // A stage that keeps within the limit for a pass does so for ever: each pass starts where the one before ended.
+  const bool reached = plan.mode != Mode::flat || lines_until_limit <= plan.rotary.lines_per_revolution;
+  if (!ab.exact && reached) {
+    ab.lines_until_limit = lines_until_limit;
     ab.revolutions_until_limit = ceil_of(Rational(*ab.lines_until_limit, Integer(plan.rotary.lines_per_revolution)));
   }
   ab.bound_lines_until_limit = floor_of(Rational(2) * Rational(ab.increment) * limit_lines);

@@ -106,13 +106,15 @@ void judge_windows(const LinePlan& line, VerifyReport& report) {
   }
 }
 
-std::string layers_text(std::int64_t first, std::int64_t last) {
-  return first == last ? "layer " + std::to_string(first)
-                       : "layers " + std::to_string(first) + " to " + std::to_string(last);
+/// Stored layers; in a helical program those are revolutions.
+std::string layers_text(const Plan& plan, std::int64_t first, std::int64_t last) {
+  const std::string one = plan.carriage ? "revolution" : "layer";
+  return first == last ? one + " " + std::to_string(first)
+                       : one + "s " + std::to_string(first) + " to " + std::to_string(last);
 }
 
 /// One violation for each run of layers whose images say the same, for example the slices of one depth map.
-void say_unread(const Tally& tally, VerifyReport& report) {
+void say_unread(const Plan& plan, const Tally& tally, VerifyReport& report) {
   constexpr int kSaid = 20;
   int said = 0;
   std::int64_t more = 0;
@@ -126,7 +128,7 @@ void say_unread(const Tally& tally, VerifyReport& report) {
     }
     report.uncompared_lines += lines;
     if (++said <= kSaid) {
-      report.violations.push_back("the image of " + layers_text(from->first, last) + " cannot be read, so " +
+      report.violations.push_back("the image of " + layers_text(plan, from->first, last) + " cannot be read, so " +
                                   std::to_string(lines) + " lines were not compared: " + from->second.why);
     } else {
       ++more;
@@ -168,7 +170,7 @@ void say_violations(const Plan& plan, const AxisChecks& axes, const Tally& tally
   if (!images_given) {
     say("the images were not found, so nothing proves that the program shows them: give --images DIR");
   }
-  say_unread(tally, report);
+  say_unread(plan, tally, report);
   if (report.wrong_pixels > 0) {
     say(std::to_string(report.wrong_pixels) + " landed pixels differ from the images, the first at " +
         place(plan, tally.first_wrong_ordinal) + ", column " + std::to_string(tally.first_wrong_column));

@@ -55,7 +55,8 @@ bidirectional         = true      # every other line runs back
 bidirectional_offset_ticks = 0    # FPGA ticks by which lines running back are later; may be negative
 )";
 
-constexpr std::string_view kField = R"(field_mm              = 0.3       # what the scanner reaches: the 0.512 mm of the images become two bands
+constexpr std::string_view kField =
+    R"(field_mm              = 0.3       # what the scanner reaches: the 0.512 mm of the images become two bands
 )";
 
 constexpr std::string_view kRotary = R"(

@@ -194,17 +194,23 @@ void check_drift(const Plan& plan, const Channel& channel, Complaint& complaint)
                   relative * Rational(plan.rotary.lines_per_revolution));
   complaint.equal(channel.section + "drift_um_per_revolution", ab.drift_um_per_revolution,
                   ab.drift_lines_per_revolution * travel_per_line_um);
-  complaint.unless(ab.lines_until_limit.has_value() == !ab.exact, channel.section + "lines_until_limit",
-                   "must be null for an exact ratio, and for no other");
-  complaint.unless(ab.revolutions_until_limit.has_value() == !ab.exact, channel.section + "revolutions_until_limit",
-                   "must be null for an exact ratio, and for no other");
   if (!complaint.none()) {
     return;
   }
-  if (!ab.exact) {
-    complaint.equal(channel.section + "lines_until_limit", *ab.lines_until_limit, ceil_of(limit_lines / abs(relative)));
+  const Integer lines = ab.exact ? Integer(0) : ceil_of(limit_lines / abs(relative));
+  // A stage that keeps within the limit for a pass does so for ever.
+  const bool reached = !ab.exact && (plan.mode != Mode::flat || lines <= plan.rotary.lines_per_revolution);
+  complaint.unless(ab.lines_until_limit.has_value() == reached, channel.section + "lines_until_limit",
+                   reached ? "is null, but the limit is reached" : "must be null: the limit is never reached");
+  complaint.unless(ab.revolutions_until_limit.has_value() == reached, channel.section + "revolutions_until_limit",
+                   reached ? "is null, but the limit is reached" : "must be null: the limit is never reached");
+  if (!complaint.none()) {
+    return;
+  }
+  if (reached) {
+    complaint.equal(channel.section + "lines_until_limit", *ab.lines_until_limit, lines);
     complaint.equal(channel.section + "revolutions_until_limit", *ab.revolutions_until_limit,
-                    ceil_of(Rational(*ab.lines_until_limit, Integer(plan.rotary.lines_per_revolution))));
+                    ceil_of(Rational(lines, Integer(plan.rotary.lines_per_revolution))));
   }
   complaint.equal(channel.section + "bound_lines_until_limit", ab.bound_lines_until_limit,
                   floor_of(Rational(2) * Rational(ab.increment) * limit_lines));

@@ -124,6 +124,21 @@ TEST(FlatPlan, MakesThePassOfTheStage) {
   EXPECT_FALSE(plan.bands || plan.carriage);
 }
 
+TEST(FlatPlan, ReachesTheLimitWithinAPassOrNever) {
+  Job job = flat_job();
+  job.fpga.counter_bits = 22;
+  job.fpga.max_prescaler = 1;
+  const Plan loose = planned(job, 3000, 1000);
+  ASSERT_FALSE(loose.ab.exact);
+  EXPECT_FALSE(loose.ab.lines_until_limit || loose.ab.revolutions_until_limit);
+  EXPECT_TRUE(loose.warnings.empty()) << loose.warnings.front();
+  job.limits.seam_um = abs(loose.ab.drift_um_per_revolution) / 2;
+  const Plan tight = planned(job, 3000, 1000);
+  EXPECT_EQ(tight.ab.lines_until_limit, Integer(2500));
+  EXPECT_EQ(tight.ab.revolutions_until_limit, Integer(1));
+  EXPECT_EQ(tight.warnings.size(), 1U);
+}
+
 TEST(Bands, AreAsFewAsFitAndButted) {
   for (const Mode mode : {Mode::rotary, Mode::flat}) {
     for (std::int64_t field = 1; field <= 40; ++field) {

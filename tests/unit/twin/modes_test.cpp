@@ -18,7 +18,8 @@ struct Shape {
   LinesAlong along = LinesAlong::rows;
   Fires fires = Fires::white;
   bool bidirectional = true;
-  std::int64_t levels = 0;  ///< a depth map of so many
+  std::int64_t levels = 0;     ///< a depth map of so many
+  bool only_forwards = false;  ///< the files must be read from their first row on
 };
 
 void prepare(SmallJob& small, const Shape& shape) {
@@ -38,6 +39,10 @@ void prepare(SmallJob& small, const Shape& shape) {
           ? depth_stack(small.images, SampleType::u8, shape.along, shape.lines, shape.columns, shape.levels, 7)
           : random_stack(small.images, SampleType::bit, shape.along, shape.lines, shape.columns, shape.layers, 7);
   small.stack.fires = shape.fires;
+  small.stack.random_access = !shape.only_forwards;
+  for (const LayerInput& input : small.stack.layers) {
+    small.images.at(input.path).info.random_access = !shape.only_forwards;
+  }
 }
 
 /// One stored layer for each revolution; its image as the mode has it.
@@ -145,6 +150,7 @@ TEST(Modes, ComeBackAsTheImagesTheyWereMadeFrom) {
     if (dice.between(0, 3) == 0) {
       shape.levels = shape.layers;
     }
+    shape.only_forwards = dice.between(0, 2) == 0;
     SCOPED_TRACE(text_of(shape));
     SmallJob small;
     prepare(small, shape);

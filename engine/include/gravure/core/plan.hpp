@@ -50,8 +50,8 @@ struct RotaryPlan {
   std::int64_t ticks_per_revolution = 0;
   Rational rpm = 0;  ///< 0 in flat mode
   Rational surface_speed_mm_s = 0;
-  std::int64_t encoder_lines = 0;  ///< 0 in flat mode
   Rational encoder_pitch_um = 0;   ///< flat mode alone: travel of one encoder line
+  std::int64_t encoder_lines = 0;  ///< 0 in flat mode
   int interpolation_bits = 0;
   std::int64_t gear_encoder_turns = 1;
   std::int64_t gear_workpiece_turns = 1;
