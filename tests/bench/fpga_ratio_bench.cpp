@@ -12,6 +12,7 @@
 #include "gravure/fpga/ab_counter.hpp"
 #include "gravure/fpga/ab_edges.hpp"
 #include "gravure/fpga/pulse_gate.hpp"
+#include "gravure/fpga/synchro_events.hpp"
 
 namespace {
 
@@ -121,6 +122,78 @@ bool against_clocks() {
   return equal;
 }
 
+constexpr int kFifoBits = 12;
+
+/// Writes one register, as a host does: for one seed clock.
+template <class Board>
+void write(Board&& hold, const fpga::Register& target, std::uint32_t value) {
+  fpga::Synchro::Inputs in;
+  in.write = true;
+  in.address = target.address;
+  in.write_data = value;
+  hold(in, 2);
+}
+
+/// The whole board with axis 0 running; `hold(inputs, clocks)` runs it.
+template <class Board>
+void run_axis(Board&& hold, std::uint32_t increment, std::uint64_t clocks) {
+  constexpr std::uint32_t kEnableAxis = 2;
+  constexpr std::uint32_t kLoadAxis = 2;
+  write(hold, fpga::kIncrementRegister, increment);
+  write(hold, fpga::kControlRegister, kEnableAxis);
+  write(hold, fpga::kCommandRegister, kLoadAxis);
+  hold({}, clocks);
+}
+
+/// The whole board: every block on every clock against its jumps from event to event.
+bool against_board() {
+  constexpr std::uint64_t kClocks = 2'000'000;
+  bool equal = true;
+  for (const std::uint32_t increment : {0U, 1U << 21U, 700'000'000U, 1U << 30U}) {
+    const Rate events = rate_of(kClocks, [&] {
+      fpga::SynchroEvents board(kFifoBits);
+      EdgeSum sum;
+      fpga::SynchroEvents::Event before;
+      const auto hold = [&](const fpga::Synchro::Inputs& in, std::uint64_t clocks) {
+        board.run(in, clocks, [&](const fpga::SynchroEvents::Event& now) {
+          if (!(now.axes[0] == before.axes[0])) {
+            sum.take(now.clock, now.axes[0].a, now.axes[0].b);
+          }
+          before = now;
+        });
+      };
+      run_axis(hold, increment, kClocks);
+      return sum;
+    });
+    const Rate clocks = rate_of(kClocks, [&] {
+      fpga::Synchro board(kFifoBits);
+      EdgeSum sum;
+      std::uint64_t clock = 0;
+      fpga::AbPins before;
+      const auto hold = [&](const fpga::Synchro::Inputs& in, std::uint64_t count) {
+        for (; count > 0; --count) {
+          const fpga::Synchro::Outputs out = board.step(in);
+          const fpga::AbPins now{out.a, out.b};
+          ++clock;
+          if (!(now == before)) {
+            sum.take(clock, now.a, now.b);
+          }
+          before = now;
+        }
+      };
+      run_axis(hold, increment, kClocks);
+      return sum;
+    });
+    equal = equal && same(events, clocks);
+    std::printf(
+        "whole board, increment %10u: event to event %.3g clocks/s, clock by clock %.3g: %.3g times; the same "
+        "edges: %s\n",
+        increment, events.clocks_per_second, clocks.clocks_per_second,
+        events.clocks_per_second / clocks.clocks_per_second, same(events, clocks) ? "yes" : "NO");
+  }
+  return equal;
+}
+
 class FiredBytes final : public PinObserver {
  public:
   void on_line(const ExecutedLine& line) override {
@@ -173,5 +246,6 @@ bool roller() {
 int main() {
   const bool rtl = against_rtl();
   const bool clocks = against_clocks();
-  return roller() && rtl && clocks ? 0 : 1;
+  const bool board = against_board();
+  return roller() && rtl && clocks && board ? 0 : 1;
 }
