@@ -44,7 +44,8 @@ def run(command, folder, timeout):
 def read_design(rtl, module, parameters):
     macros = " ".join(word for word in parameters if word.startswith("-D"))
     chparam = " ".join("-set " + word.replace("=", " ") for word in parameters if not word.startswith("-D"))
-    script = f"read_verilog -formal {macros} -I{rtl} {' '.join(str(file) for file in sorted(rtl.glob('*.v')))}; "
+    claims = "-sv" if "-DFORMAL_TOP" in macros else "-formal"  # of the top alone, or of the block
+    script = f"read_verilog {claims} {macros} -I{rtl} {' '.join(str(file) for file in sorted(rtl.glob('*.v')))}; "
     if chparam:
         script += f"chparam {chparam} {module}; "
     return script + f"prep -top {module} -flatten; async2sync; dffunmap; "

@@ -79,6 +79,13 @@ def make_header(registers, blocks):
     for r in registers:
         text += [f"inline constexpr Register {camel(r['name'])}Register{{", f"    \"{r['name']}\", {r['reset']:#x}, "
                  f"{r['bits']}, {r['address']:#04x}, RegisterAccess::{access[r['access']]}}};"]
+    text += ["", "/// What a register of a board may say, where boards differ.", "struct RegisterRange {", "  std::int64_t low;",
+             "  std::int64_t high;", "};"]
+    for r in registers:
+        if r["access"] == "ro" and r["range"]:
+            text.append(f"inline constexpr RegisterRange {camel(r['name'])}Range{{{', '.join(r['range'].split('..'))}}};")
+    text += ["", "/// The largest value that fits.", "constexpr std::uint64_t largest(const Register& one) noexcept {",
+             "  return (std::uint64_t{1} << static_cast<unsigned>(one.bits)) - 1;", "}"]
     text += ["", "inline constexpr Register kRegisters[] = {"]
     text += [f"    {camel(r['name'])}Register," for r in registers]
     text += ["};", "", "/// Registers whose range begins with 1: the board refuses a 0.",
@@ -89,10 +96,23 @@ def make_header(registers, blocks):
     for bits, words in words_by_width(registers):
         text += [f"    case {camel(r['name'])}Register.address" + (f" + {word}" if word else "") + ":" for r, word in words]
         text += [f"      return {(1 << 32) - (1 << bits):#x};"]
-    text += ["    default:", "      return 0;", "  }", "}", "", "/// The descriptor ROM from address 0x80 on: kind << 24 | version << 16 | size.",
+    stored = [(r["address"] + word, r["reset"] >> 32 * word & 0xFFFFFFFF) for r in registers if r["access"] == "rw"
+              for word in range((r["bits"] + 31) // 32)]
+    text += ["    default:", "      return 0;", "  }", "}", "", "/// A word that is read back as it was written, and what it is before that.",
+             "struct StoredWord {", "  std::uint8_t address;", "  std::uint32_t reset;", "};",
+             f"inline constexpr std::array<StoredWord, {len(stored)}> kStoredWords{{{{"]
+    text += [f"    {{{address:#04x}, {reset:#x}}}," for address, reset in stored] + ["}};"]
+    text += ["", "/// The descriptor ROM from address 0x80 on: kind << 24 | version << 16 | size.",
              f"inline constexpr std::array<std::uint32_t, {len(blocks)}> kDescriptors{{"]
     text += [f"    {word:#010x},  // {name}: {size} {meaning}" for name, word, size, meaning in blocks]
     return "\n".join(text + ["};", "", "}  // namespace gravure::fpga"]) + "\n"
+
+
+def words_of(register):
+    """(address as Verilog writes it, reset value) of each of its words."""
+    name = "ADDRESS_" + register["name"].upper()
+    return [(name + (f" + 8'd{word}" if word else ""), register["reset"] >> 32 * word & 0xFFFFFFFF)
+            for word in range((register["bits"] + 31) // 32)]
 
 
 def make_verilog(registers):
@@ -109,6 +129,11 @@ def make_verilog(registers):
     text[-1] += ";"
     text += ["endfunction", "// Of these the register file refuses a 0.", "function refuses_zero(input [7:0] at);",
              "  refuses_zero = " + " ||\n      ".join("at == ADDRESS_" + r["name"].upper() for r in not_zero(registers)) + ";",
+             "endfunction", "// These are read back as they were written.", "function reads_back(input [7:0] at);"]
+    stored = [word for r in registers if r["access"] == "rw" for word in words_of(r)]
+    text += ["  reads_back = " + " ||\n      ".join(f"at == {word}" for word, _ in stored) + ";", "endfunction",
+             "// And like this before the first write.", "function [31:0] reset_word(input [7:0] at);"]
+    text += ["  reset_word = 32'd0" + "".join(f"\n      | {{32{{at == {word}}}}} & 32'h{reset:x}" for word, reset in stored if reset) + ";",
              "endfunction"]
     return "\n".join(text) + "\n"
 
@@ -124,7 +149,7 @@ def make_page(registers, blocks):
     text = ["# Registers of the board", "",
             "Made by `fpga/regs/generate.py` from `registers.txt` and `blocks.txt` beside it. Addresses count 32-bit words.",
             "Values of more than 32 bits take two words, low word first; writing the high word takes both. `ro` is read only,",
-            "`rw` read and write, `wo` a command: reading gives 0. The board refuses (status bit 11) a 0 where a range begins with 1, a",
+            "`rw` read and write (what is read is what was accepted there last, a low word even before its high one), `wo` a command:\nreading gives 0. The board refuses (status bit 11) a 0 where a range begins with 1, a",
             "value of more bits than the register has, any change from 0x30 to 0x35 and from 0x39 to 0x3f (but low_level) while slots run, and to run slots while their settings",
             "do not fit together or are younger than four clocks. A-B registers are checked when they are loaded.", "",
             "| address | name | bits | access | reset | range | meaning |", "|---|---|---|---|---|---|---|"]

@@ -41,7 +41,6 @@ module ab_pacer #(
   localparam P = PRESCALER_BITS;
   localparam F = FRACTION_BITS;
   localparam [P-1:0] TWO = 2;
-  localparam [BITS-1:0] QUARTER = {2'b01, {(BITS - 2) {1'b0}}};  // 2^(BITS-2)
 
   // A load passes eight stages. 0: taken aside; 1, 2: checked; 3..7: put in force, each at the stage that uses it, behind
   // the last word of the registers before.
@@ -53,8 +52,9 @@ module ab_pacer #(
   reg new_over, new_quarter, new_zero, new_one;
   reg [P-1:0] new_period_less;
   reg new_ok;
-  wire over = increment > QUARTER;
-  wire quarter = increment == QUARTER;
+  wire any_low = increment[BITS-3:0] != 0;  // compared bit by bit with 2^(BITS-2): no long carry chain
+  wire over = increment[BITS-1] || (increment[BITS-2] && any_low);
+  wire quarter = !increment[BITS-1] && increment[BITS-2] && !any_low;
 
   reg has_fraction;   // of the registers that `step` belongs to
   reg word_fraction;  // and of those of the word that follows
@@ -197,6 +197,7 @@ module ab_pacer #(
     end
   endgenerate
 `ifdef FORMAL
+  localparam [BITS-1:0] QUARTER = {2'b01, {(BITS - 2) {1'b0}}};
   // The contract as it stands above, clock by clock, one FPGA clock after the other; `due` and `carry` follow it.
   reg [P-1:0] ref_phase, ref_period;
   reg [F-1:0] ref_acc, ref_num, ref_den;

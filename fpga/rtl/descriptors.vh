@@ -6,8 +6,8 @@
 6'd4: word <= 32'h03020100;  // increment schedule, axis 1: 256 segments
 6'd5: word <= 32'h0402000c;  // line FIFO: 12 2^size bytes
 6'd6: word <= 32'h05020010;  // line queue: 16 lines
-6'd7: word <= 32'h06020010;  // slots and lines: 16 bits of k and np
+6'd7: word <= 32'h06030018;  // slots and lines: 24 bits of np; k has 16
 6'd8: word <= 32'h07010010;  // direction delay: 16 bits
 6'd9: word <= 32'h08010030;  // index reference: 48 bits of a revolution
-6'd10: word <= 32'h09010010;  // scanner clock: 16 bits
+6'd10: word <= 32'h09020018;  // scanner clock: 24 bits
 6'd11: word <= 32'h0a010020;  // watchdog: 32 bits

@@ -7,7 +7,8 @@
 // `odd` belongs to the line committed last: its number, counted from the job's first line, is odd.
 // position_load sets the line that must come next (after clear, before a job).
 // Latency: commit or fault three clocks after the frame's last byte (VERDICT_LATENCY); line_valid on the same clock as
-// commit. The settings and the position are to stand for two clocks before a frame's last byte.
+// commit. window_slots is to stand for two clocks before a frame and to its end, the other settings and the position for
+// two clocks before its last byte.
 // Reset: waiting for revolution 0, line 0.
 `default_nettype none
 module frame_parser (
@@ -16,8 +17,8 @@ module frame_parser (
     input wire clear,
     input wire in_valid,
     input wire [7:0] in_data,
-    input wire [15:0] slots_per_line,
-    input wire [15:0] window_slots,
+    input wire [23:0] slots_per_line,
+    input wire [23:0] window_slots,
     input wire [31:0] lines_per_revolution,
     input wire position_load,
     input wire [31:0] position_revolution,
@@ -27,7 +28,7 @@ module frame_parser (
     output reg commit,
     output reg rollback,
     output reg line_valid,
-    output reg [15:0] first_slot,
+    output reg [23:0] first_slot,
     output reg odd,
     output reg sequence_error,
     output reg shape_error,
@@ -39,14 +40,14 @@ module frame_parser (
   localparam [1:0] IDLE = 2'd0, HEAD = 2'd1, BITS = 2'd2, CHECK = 2'd3;
 
   reg [1:0] state;
-  reg [12:0] place;  // byte within the part
+  reg [20:0] place;  // byte within the part
   reg bad_sequence, bad_shape, bad_checksum;
-  reg [15:0] new_first_slot;
+  reg [23:0] new_first_slot;
 
   wire stopped = sequence_error || shape_error || checksum_error;
   reg ended;  // the last byte was taken on the clock before; the next frame may begin already
   reg window_fits, last_line;
-  reg [16:0] window_end;
+  reg [24:0] window_end;
   reg [31:0] next_line;
   wire bad = bad_sequence || bad_shape || bad_checksum || !window_fits;
   reg byte_valid;
@@ -56,7 +57,7 @@ module frame_parser (
     byte_data <= in_data;
   end
   wire take = byte_valid && !stopped && !(ended && bad);
-  wire [12:0] window_bytes = window_slots[15:3] + {12'd0, window_slots[2:0] != 0};
+  reg [20:0] window_bytes, last_place;
   wire [7:0] unused_bits = window_slots[2:0] == 0 ? 8'h00 : 8'hFF >> window_slots[2:0];
 `ifdef FORMAL
   (* anyseq *) reg [31:0] crc;  // the claims hold whatever the checksum is
@@ -77,6 +78,8 @@ module frame_parser (
   wire frame_end = take && state == CHECK && place == 3;
 
   always @(posedge clk) begin
+    window_bytes <= window_slots[23:3] + {20'd0, window_slots[2:0] != 0};
+    last_place <= window_bytes - 21'd1;
     window_end <= {1'b0, new_first_slot} + {1'b0, window_slots};
     window_fits <= window_end <= {1'b0, slots_per_line};
     next_line <= line + 32'd1;
@@ -123,7 +126,7 @@ module frame_parser (
         end
       end
       if (take) begin
-        place <= place + 13'd1;
+        place <= place + 21'd1;
         case (state)
           IDLE: begin
             place <= 0;
@@ -138,16 +141,17 @@ module frame_parser (
             if (place[4:3] == 2'd1 && wrong_line) bad_sequence <= 1'b1;
             if (place == 16) new_first_slot[7:0] <= byte_data;
             if (place == 17) new_first_slot[15:8] <= byte_data;
-            if (place >= 18 && byte_data != 0) bad_shape <= 1'b1;
+            if (place == 18) new_first_slot[23:16] <= byte_data;
+            if (place >= 19 && byte_data != 0) bad_shape <= 1'b1;
             if (place == 23) begin
               place <= 0;
-              state <= window_bytes == 0 ? CHECK : BITS;
+              state <= window_slots == 0 ? CHECK : BITS;
             end
           end
           BITS: begin
             push <= 1'b1;
             push_data <= byte_data;
-            if (place == window_bytes - 13'd1) begin
+            if (place == last_place) begin
               if ((byte_data & unused_bits) != 0) bad_shape <= 1'b1;
               place <= 0;
               state <= CHECK;

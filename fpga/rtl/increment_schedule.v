@@ -50,10 +50,10 @@ module increment_schedule #(
       if (next) begin
         increment <= segment[BITS+W-1:W];
         left <= segment[W-1:0];
-        over <= segment[W-1:0] <= 1;
+        over <= segment[W-1:1] == 0;
       end else if (run && left != 0) begin
         left <= left - 1'b1;
-        over <= left <= 2;
+        over <= left[W-1:2] == 0 && left[1:0] != 2'd3;
       end
       busy <= next || (busy && !due);
     end

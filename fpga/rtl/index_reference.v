@@ -7,6 +7,7 @@
 // An index that comes earlier than the window is not one and is dropped; one that is missing by more than the window is
 // taken as if it had come on plan, without a correction. Both set `lost`, sticky until clear.
 //
+// limit is to stand while enable is high: on a change `ahead` would go another way than `pending` for a clock.
 // index is a pin, two flip-flops bring it into this clock; its rising edge counts.
 // Latency: error four clocks after the pin's edge; adjust two clocks after line_end at the earliest, later where an
 // index comes at that time. Reset and enable low: no reference, nothing pending.
@@ -34,19 +35,25 @@ module index_reference #(
   wire edge_seen = pin[1] && !pin[2];
   reg signed [BITS-1:0] ahead;
   reg [BITS-1:0] revolution_less;
-  reg near, early, missing;
+  reg missing;
   reg signed [W+1:0] pending;
-  reg signed [8:0] part;  // of pending, for the next line
+  reg signed [8:0] part;       // of pending, for the next line
+  reg signed [9:0] part_less;  // that less the clock it is taken in
+  reg signed [8:0] limit_less;
   reg wanted, settled;
 
-  wire [BITS:0] reach = {{(BITS - W + 1) {1'b0}}, window};
-  wire [BITS:0] wide = {ahead[BITS-1], ahead};
-  /* verilator lint_off UNUSEDSIGNAL */  // the signs alone matter
-  wire [BITS:0] over = reach - wide;   // negative: ahead > window
-  wire [BITS:0] under = wide + reach;  // negative: ahead < -window
-  /* verilator lint_on UNUSEDSIGNAL */
+  // Where `ahead` was a clock ago: within W bits of 0, above or below, and there within the window.
+  reg sign, at_plus, at_minus, in_window, in_window_less;
+  wire near_above = at_plus && in_window;
+  wire near_below = at_minus && in_window_less;
+  wire near = near_above || near_below;
+  wire early = !sign && !near_above;
+  wire late = sign && !near_below;
+  wire [W:0] less_sum = {1'b0, ahead[W-1:0]} + {1'b0, window};  // its carry: ahead, W bits and a sign, is not below -window
   wire signed [W+1:0] most = $signed({{(W - 6) {1'b0}}, limit});
-  // A turn is decided one clock before it is taken, and not again before `near` and `missing` know of it.
+  wire above = pending > most;
+  wire below = pending < -most;
+  // A turn is decided one clock before it is taken, and not again before `near` and `late` know of it.
   reg take, turn, turned;
   wire free = !turn && !turned;
   wire serve = wanted && settled && !turn;
@@ -54,9 +61,14 @@ module index_reference #(
   always @(posedge clk) begin
     pin <= rst ? 3'b111 : {pin[1:0], index};
     revolution_less <= revolution - 1'b1;
-    near <= !over[BITS] && !under[BITS];
-    early <= over[BITS];
-    part <= pending > most ? {1'b0, limit} : pending < -most ? -{1'b0, limit} : pending[8:0];
+    sign <= ahead[BITS-1];
+    at_plus <= ahead[BITS-1:W] == 0;
+    at_minus <= &ahead[BITS-1:W];
+    in_window <= $unsigned(ahead[W-1:0]) <= window;
+    in_window_less <= less_sum[W];
+    limit_less <= {1'b0, limit} - 1'b1;
+    part <= above ? {1'b0, limit} : below ? -{1'b0, limit} : pending[8:0];
+    part_less <= above ? {limit_less[8], limit_less} : below ? {2'b11, ~limit} : {pending[8], pending[8:0]} - 1'b1;
     adjust <= 1'b0;
     if (rst || !enable) begin
       referenced <= 1'b0;
@@ -71,12 +83,12 @@ module index_reference #(
       if (rst) error <= 0;
       if (rst) amount <= 0;
     end else begin
-      missing <= referenced && under[BITS] && free && !missing;
+      missing <= referenced && late && free && !missing;
       take <= referenced && edge_seen && near && free && !missing;
       turn <= referenced ? free && (missing || (edge_seen && near)) : edge_seen && free;
       turned <= turn;
       ahead <= ahead + (turn ? $signed(revolution_less) :
-                        serve ? $signed({{(BITS - 9) {part[8]}}, part}) - 1'b1 : {BITS{referenced}});  // -1, or 0
+                        serve ? $signed({{(BITS - 10) {part_less[9]}}, part_less}) : {BITS{referenced}});  // -1, or 0
       if (turn) referenced <= 1'b1;
       settled <= !turn && !serve;
       if (take) begin

@@ -28,7 +28,7 @@ module line_fifo #(
     output reg overflow
 );
   localparam A = ADDRESS_BITS;
-  reg [W-1:0] memory[0:(1<<A)-1];
+  (* no_rw_check *) reg [W-1:0] memory[0:(1<<A)-1];  // never read where it is written on the same clock: proved below
   reg [A:0] written;    // pushed, on trial or not
   reg [A:0] committed;
   reg [A:0] taken;      // moved to `data`
@@ -87,6 +87,7 @@ module line_fifo #(
   always @(*) if (past_valid) begin
     assert (used <= (1 << A));
     assert (committed - taken <= used);
+    if (accept && refill) assert (written[A-1:0] != taken[A-1:0]);
     if (from_taken < used) assert (memory[place[A-1:0]] == pushed);
     if (shown && valid) assert (data == shown_byte);
   end

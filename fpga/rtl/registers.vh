@@ -2,7 +2,7 @@
 localparam [7:0] ADDRESS_MAGIC = 8'h00;
 localparam [31:0] RESET_MAGIC = 32'h47524156;
 localparam [7:0] ADDRESS_VERSION = 8'h01;
-localparam [31:0] RESET_VERSION = 32'h2;
+localparam [31:0] RESET_VERSION = 32'h3;
 localparam [7:0] ADDRESS_COUNTER_BITS = 8'h02;
 localparam [7:0] RESET_COUNTER_BITS = 8'h20;
 localparam [7:0] ADDRESS_FIFO_BITS = 8'h03;
@@ -40,11 +40,11 @@ localparam [33:0] RESET_FRACTION_DEN_1 = 34'h1;
 localparam [7:0] ADDRESS_SEEDS_PER_SLOT = 8'h30;
 localparam [15:0] RESET_SEEDS_PER_SLOT = 16'h1;
 localparam [7:0] ADDRESS_SLOTS_PER_LINE = 8'h31;
-localparam [15:0] RESET_SLOTS_PER_LINE = 16'h0;
+localparam [23:0] RESET_SLOTS_PER_LINE = 24'h0;
 localparam [7:0] ADDRESS_WINDOW_SLOTS = 8'h32;
-localparam [15:0] RESET_WINDOW_SLOTS = 16'h0;
+localparam [23:0] RESET_WINDOW_SLOTS = 24'h0;
 localparam [7:0] ADDRESS_SLOTS_PER_MICROVECTOR = 8'h33;
-localparam [15:0] RESET_SLOTS_PER_MICROVECTOR = 16'h1;
+localparam [23:0] RESET_SLOTS_PER_MICROVECTOR = 24'h1;
 localparam [7:0] ADDRESS_LINES_PER_REVOLUTION = 8'h34;
 localparam [31:0] RESET_LINES_PER_REVOLUTION = 32'h1;
 localparam [7:0] ADDRESS_POSITION_REVOLUTION = 8'h36;
@@ -82,13 +82,13 @@ function [31:0] unused_bits(input [7:0] at);
       | {32{at == ADDRESS_CORRECTION_LIMIT}} & 32'hffffff00
       | {32{at == ADDRESS_COMMAND}} & 32'hfffffc00
       | {32{at == ADDRESS_SEEDS_PER_SLOT ||
-             at == ADDRESS_SLOTS_PER_LINE ||
-             at == ADDRESS_WINDOW_SLOTS ||
-             at == ADDRESS_SLOTS_PER_MICROVECTOR ||
              at == ADDRESS_REVERSE_DELAY ||
              at == ADDRESS_LOW_LEVEL ||
              at == ADDRESS_INDEX_WINDOW ||
-             at == ADDRESS_REVOLUTION_SEEDS + 8'd1}} & 32'hffff0000;
+             at == ADDRESS_REVOLUTION_SEEDS + 8'd1}} & 32'hffff0000
+      | {32{at == ADDRESS_SLOTS_PER_LINE ||
+             at == ADDRESS_WINDOW_SLOTS ||
+             at == ADDRESS_SLOTS_PER_MICROVECTOR}} & 32'hff000000;
 endfunction
 // Of these the register file refuses a 0.
 function refuses_zero(input [7:0] at);
@@ -98,4 +98,50 @@ function refuses_zero(input [7:0] at);
       at == ADDRESS_LINES_PER_REVOLUTION ||
       at == ADDRESS_SILENCE_LIMIT ||
       at == ADDRESS_SCHEDULE_SEEDS;
+endfunction
+// These are read back as they were written.
+function reads_back(input [7:0] at);
+  reads_back = at == ADDRESS_CONTROL ||
+      at == ADDRESS_INCREMENT ||
+      at == ADDRESS_PRESCALER ||
+      at == ADDRESS_FRACTION_NUM ||
+      at == ADDRESS_FRACTION_NUM + 8'd1 ||
+      at == ADDRESS_FRACTION_DEN ||
+      at == ADDRESS_FRACTION_DEN + 8'd1 ||
+      at == ADDRESS_INCREMENT_1 ||
+      at == ADDRESS_PRESCALER_1 ||
+      at == ADDRESS_FRACTION_NUM_1 ||
+      at == ADDRESS_FRACTION_NUM_1 + 8'd1 ||
+      at == ADDRESS_FRACTION_DEN_1 ||
+      at == ADDRESS_FRACTION_DEN_1 + 8'd1 ||
+      at == ADDRESS_SEEDS_PER_SLOT ||
+      at == ADDRESS_SLOTS_PER_LINE ||
+      at == ADDRESS_WINDOW_SLOTS ||
+      at == ADDRESS_SLOTS_PER_MICROVECTOR ||
+      at == ADDRESS_LINES_PER_REVOLUTION ||
+      at == ADDRESS_POSITION_REVOLUTION ||
+      at == ADDRESS_POSITION_LINE ||
+      at == ADDRESS_SILENCE_LIMIT ||
+      at == ADDRESS_FIRST_TICK ||
+      at == ADDRESS_REVERSE_DELAY ||
+      at == ADDRESS_LOW_LEVEL ||
+      at == ADDRESS_CORRECTION_LIMIT ||
+      at == ADDRESS_INDEX_WINDOW ||
+      at == ADDRESS_REVOLUTION_SEEDS ||
+      at == ADDRESS_REVOLUTION_SEEDS + 8'd1 ||
+      at == ADDRESS_SCHEDULE_INCREMENT ||
+      at == ADDRESS_SCHEDULE_SEEDS;
+endfunction
+// And like this before the first write.
+function [31:0] reset_word(input [7:0] at);
+  reset_word = 32'd0
+      | {32{at == ADDRESS_PRESCALER}} & 32'h1
+      | {32{at == ADDRESS_FRACTION_DEN}} & 32'h1
+      | {32{at == ADDRESS_PRESCALER_1}} & 32'h1
+      | {32{at == ADDRESS_FRACTION_DEN_1}} & 32'h1
+      | {32{at == ADDRESS_SEEDS_PER_SLOT}} & 32'h1
+      | {32{at == ADDRESS_SLOTS_PER_MICROVECTOR}} & 32'h1
+      | {32{at == ADDRESS_LINES_PER_REVOLUTION}} & 32'h1
+      | {32{at == ADDRESS_SILENCE_LIMIT}} & 32'h7d1f40
+      | {32{at == ADDRESS_SCHEDULE_SEEDS}} & 32'h1;
 endfunction

@@ -1,6 +1,6 @@
 // Scanner clock: a strobe every slots_per_microvector-th slot of a line, in phase with the line's first slot.
 //
-// A setting of 0 acts as 1. Latency: one clock after the sequencer's outputs. Reset: idle.
+// A setting of 0 acts as 1; it is to stand for a clock before a line. Latency: one clock after the sequencer's outputs. Reset: idle.
 `default_nettype none
 module scanner_clock #(
     parameter W = 16
@@ -12,14 +12,21 @@ module scanner_clock #(
     input wire [W-1:0] slots_per_microvector,
     output reg scan
 );
-  reg [W-1:0] phase;
-  wire [W-1:0] now = first ? {W{1'b0}} : phase;
-  wire wrap = {1'b0, now} + 1'b1 >= {1'b0, slots_per_microvector};
+  // Decisions until the next strobe; the setting less one, that of 0 too.
+  reg [W-1:0] left, reload;
+  reg due;  // left is 0
+  wire strobe = first || due;
 
   always @(posedge clk) begin
-    scan <= !rst && decision && now == 0;
-    if (rst) phase <= 0;
-    else if (decision) phase <= wrap ? {W{1'b0}} : now + 1'b1;
+    reload <= slots_per_microvector == 0 ? {W{1'b0}} : slots_per_microvector - 1'b1;
+    scan <= !rst && decision && strobe;
+    if (rst) begin
+      left <= 0;
+      due <= 1'b1;
+    end else if (decision) begin
+      left <= strobe ? reload : left - 1'b1;
+      due <= strobe ? reload == 0 : left == 1;
+    end
   end
 
 `ifdef FORMAL

@@ -6,8 +6,9 @@
 //   - slots to run while slots_per_line is 0 or smaller than window_slots, reverse_delay is not less than seeds_per_slot,
 //     or a correction_limit that is not 0 leaves less than 8 clocks of a slot beside the delay; or in the four clocks
 //     after one of these was written.
-// `command` is high for one clock. Values of two words are taken with their high word.
-// Latency: one clock. Reset: as the map says.
+// `command` is high for one clock. Values of two words are taken with their high word. `store` goes with every accepted
+// write of a register that can be read back: what was written where.
+// Latency: two clocks (SETTINGS_LATENCY): the word is taken aside and looked at, then accepted. Reset: as the map says.
 `default_nettype none
 module settings (
     input wire clk,
@@ -27,9 +28,9 @@ module settings (
     output reg [33:0] fraction_num_1,
     output reg [33:0] fraction_den_1,
     output reg [15:0] seeds_per_slot,
-    output reg [15:0] slots_per_line,
-    output reg [15:0] window_slots,
-    output reg [15:0] slots_per_microvector,
+    output reg [23:0] slots_per_line,
+    output reg [23:0] window_slots,
+    output reg [23:0] slots_per_microvector,
     output reg [31:0] lines_per_revolution,
     output reg [31:0] position_revolution,
     output reg [31:0] position_line,
@@ -42,6 +43,9 @@ module settings (
     output reg [47:0] revolution_seeds,
     output reg [31:0] schedule_increment,
     output reg [31:0] schedule_seeds,
+    output wire store,
+    output reg [7:0] store_address,
+    output reg [31:0] store_data,
     output reg refused
 );
   /* verilator lint_off UNUSEDPARAM */
@@ -52,11 +56,24 @@ module settings (
   reg [2:0] young;      // clocks until the settings have been checked
   reg [16:0] least_slot;
   reg fits;
-  wire line_setting = (address[7:4] == 4'h3) && address[3:1] != 3'b011 && address[3:0] != 4'h8 && address[3:0] != 4'hb;
-  wire starts = address == ADDRESS_CONTROL && write_data[0] && !control[0];
-  wire bad = (write_data == 0 && refuses_zero(address)) || (write_data & unused_bits(address)) != 0 || (line_setting && control[0]) ||
-             (starts && (!fits || young != 0));
-  wire accept = write && !bad;
+
+  // The word of the clock before: whether there is one, whether it is wrong by itself, and what it is.
+  reg asked, bad_word, line_setting, starts, stored;
+  wire line_address = address[7:4] == 4'h3 && address[3:1] != 3'b011 && address[3:0] != 4'h8 && address[3:0] != 4'hb;
+  wire bad_now = (write_data == 0 && refuses_zero(address)) || (write_data & unused_bits(address)) != 0;
+  always @(posedge clk) begin
+    asked <= write && !bad_now && !rst;
+    bad_word <= write && bad_now && !rst;
+    store_address <= address;
+    store_data <= write_data;
+    line_setting <= line_address;
+    starts <= address == ADDRESS_CONTROL && write_data[0];
+    stored <= reads_back(address);
+  end
+  wire bad_line = line_setting && control[0];
+  wire bad_start = starts && !control[0] && (!fits || young != 0);
+  wire accept = asked && !bad_line;  // of control: && !bad_start
+  assign store = accept && !bad_start && stored;
 
   always @(posedge clk) begin
     least_slot <= {1'b0, reverse_delay} + (correction_limit == 0 ? 17'd1 : {9'd0, correction_limit} + 17'd8);
@@ -92,43 +109,43 @@ module settings (
       refused <= 1'b0;
       young <= 3'd4;
     end else begin
-      if (write && bad) refused <= 1'b1;
+      if (bad_word || (asked && (bad_line || bad_start))) refused <= 1'b1;
       else if (clear) refused <= 1'b0;
       if (accept && line_setting) young <= 3'd4;
       else if (young != 0) young <= young - 3'd1;
       if (accept) begin
-        case (address)
-          ADDRESS_CONTROL: control <= write_data[6:0];
-          ADDRESS_COMMAND: command <= write_data[9:0];
-          ADDRESS_INCREMENT: increment <= write_data;
-          ADDRESS_PRESCALER: prescaler <= write_data;
-          ADDRESS_FRACTION_NUM + 8'd1: fraction_num <= {write_data[1:0], low_word};
-          ADDRESS_FRACTION_DEN + 8'd1: fraction_den <= {write_data[1:0], low_word};
-          ADDRESS_INCREMENT_1: increment_1 <= write_data;
-          ADDRESS_PRESCALER_1: prescaler_1 <= write_data;
-          ADDRESS_FRACTION_NUM_1 + 8'd1: fraction_num_1 <= {write_data[1:0], low_word};
-          ADDRESS_FRACTION_DEN_1 + 8'd1: fraction_den_1 <= {write_data[1:0], low_word};
-          ADDRESS_SEEDS_PER_SLOT: seeds_per_slot <= write_data[15:0];
-          ADDRESS_SLOTS_PER_LINE: slots_per_line <= write_data[15:0];
-          ADDRESS_WINDOW_SLOTS: window_slots <= write_data[15:0];
-          ADDRESS_SLOTS_PER_MICROVECTOR: slots_per_microvector <= write_data[15:0];
-          ADDRESS_LINES_PER_REVOLUTION: lines_per_revolution <= write_data;
-          ADDRESS_POSITION_REVOLUTION: position_revolution <= write_data;
-          ADDRESS_POSITION_LINE: position_line <= write_data;
-          ADDRESS_SILENCE_LIMIT: silence_limit <= write_data;
-          ADDRESS_FIRST_TICK: first_tick <= write_data;
-          ADDRESS_REVERSE_DELAY: reverse_delay <= write_data[15:0];
-          ADDRESS_LOW_LEVEL: low_level <= write_data[15:0];
-          ADDRESS_CORRECTION_LIMIT: correction_limit <= write_data[7:0];
-          ADDRESS_INDEX_WINDOW: index_window <= write_data[15:0];
-          ADDRESS_REVOLUTION_SEEDS + 8'd1: revolution_seeds <= {write_data[15:0], low_word};
-          ADDRESS_SCHEDULE_INCREMENT: schedule_increment <= write_data;
-          ADDRESS_SCHEDULE_SEEDS: schedule_seeds <= write_data;
+        case (store_address)
+          ADDRESS_CONTROL: if (!bad_start) control <= store_data[6:0];
+          ADDRESS_COMMAND: command <= store_data[9:0];
+          ADDRESS_INCREMENT: increment <= store_data;
+          ADDRESS_PRESCALER: prescaler <= store_data;
+          ADDRESS_FRACTION_NUM + 8'd1: fraction_num <= {store_data[1:0], low_word};
+          ADDRESS_FRACTION_DEN + 8'd1: fraction_den <= {store_data[1:0], low_word};
+          ADDRESS_INCREMENT_1: increment_1 <= store_data;
+          ADDRESS_PRESCALER_1: prescaler_1 <= store_data;
+          ADDRESS_FRACTION_NUM_1 + 8'd1: fraction_num_1 <= {store_data[1:0], low_word};
+          ADDRESS_FRACTION_DEN_1 + 8'd1: fraction_den_1 <= {store_data[1:0], low_word};
+          ADDRESS_SEEDS_PER_SLOT: seeds_per_slot <= store_data[15:0];
+          ADDRESS_SLOTS_PER_LINE: slots_per_line <= store_data[23:0];
+          ADDRESS_WINDOW_SLOTS: window_slots <= store_data[23:0];
+          ADDRESS_SLOTS_PER_MICROVECTOR: slots_per_microvector <= store_data[23:0];
+          ADDRESS_LINES_PER_REVOLUTION: lines_per_revolution <= store_data;
+          ADDRESS_POSITION_REVOLUTION: position_revolution <= store_data;
+          ADDRESS_POSITION_LINE: position_line <= store_data;
+          ADDRESS_SILENCE_LIMIT: silence_limit <= store_data;
+          ADDRESS_FIRST_TICK: first_tick <= store_data;
+          ADDRESS_REVERSE_DELAY: reverse_delay <= store_data[15:0];
+          ADDRESS_LOW_LEVEL: low_level <= store_data[15:0];
+          ADDRESS_CORRECTION_LIMIT: correction_limit <= store_data[7:0];
+          ADDRESS_INDEX_WINDOW: index_window <= store_data[15:0];
+          ADDRESS_REVOLUTION_SEEDS + 8'd1: revolution_seeds <= {store_data[15:0], low_word};
+          ADDRESS_SCHEDULE_INCREMENT: schedule_increment <= store_data;
+          ADDRESS_SCHEDULE_SEEDS: schedule_seeds <= store_data;
           default: ;
         endcase
-        case (address)
+        case (store_address)
           ADDRESS_FRACTION_NUM, ADDRESS_FRACTION_DEN, ADDRESS_FRACTION_NUM_1, ADDRESS_FRACTION_DEN_1,
-          ADDRESS_REVOLUTION_SEEDS: low_word <= write_data;
+          ADDRESS_REVOLUTION_SEEDS: low_word <= store_data;
           default: ;
         endcase
       end
@@ -137,9 +154,9 @@ module settings (
 
 `ifdef FORMAL
   reg valid = 1'b0;
-  reg [101:0] past_line;
+  reg [117:0] past_line;
   reg past_run, past_fits;
-  wire [101:0] now_line = {seeds_per_slot, slots_per_line, window_slots, reverse_delay, correction_limit, index_window,
+  wire [117:0] now_line = {seeds_per_slot, slots_per_line, window_slots, reverse_delay, correction_limit, index_window,
                            slots_per_microvector[13:0]};
   initial assume (rst);
   always @(posedge clk) begin

@@ -45,10 +45,13 @@ module synchro #(
   wire [31:0] increment, prescaler, increment_1, prescaler_1, lines_per_revolution, position_revolution, position_line;
   wire [31:0] silence_limit, first_tick, schedule_increment, schedule_seeds;
   wire [33:0] fraction_num, fraction_den, fraction_num_1, fraction_den_1;
-  wire [15:0] seeds_per_slot, slots_per_line, window_slots, slots_per_microvector, reverse_delay, low_level, index_window;
+  wire [15:0] seeds_per_slot, reverse_delay, low_level, index_window;
+  wire [23:0] slots_per_line, window_slots, slots_per_microvector;
   wire [7:0] correction_limit;
   wire [47:0] revolution_seeds;
-  wire setting_refused;
+  wire store, setting_refused;
+  wire [7:0] store_address;
+  wire [31:0] store_data;
   settings host_settings (
       .clk(clk), .rst(rst), .clear(acknowledge), .write(write), .address(address), .write_data(write_data),
       .control(control), .command(command), .increment(increment), .prescaler(prescaler), .fraction_num(fraction_num),
@@ -59,7 +62,8 @@ module synchro #(
       .position_line(position_line), .silence_limit(silence_limit), .first_tick(first_tick),
       .reverse_delay(reverse_delay), .low_level(low_level), .correction_limit(correction_limit),
       .index_window(index_window), .revolution_seeds(revolution_seeds), .schedule_increment(schedule_increment),
-      .schedule_seeds(schedule_seeds), .refused(setting_refused)
+      .schedule_seeds(schedule_seeds), .store(store), .store_address(store_address), .store_data(store_data),
+      .refused(setting_refused)
   );
 
   // The axes. A segment of a schedule goes before an increment of the host.
@@ -94,7 +98,7 @@ module synchro #(
   // From the host to whole lines.
   wire push, commit, rollback, line_valid, sequence_error, shape_error, checksum_error;
   wire [7:0] push_data;
-  wire [15:0] first_slot;
+  wire [23:0] first_slot;
   wire line_is_odd;
   frame_parser parser (
       .clk(clk), .rst(rst), .clear(acknowledge), .in_valid(in_valid), .in_data(in_data),
@@ -119,8 +123,8 @@ module synchro #(
   reg queue_commit;
   always @(posedge clk) queue_commit <= line_valid && !rst;
   wire queue_valid, queue_overflow, line_first, queue_odd;
-  wire [15:0] queue_first_slot;
-  line_fifo #(.W(17), .ADDRESS_BITS(4)) queue (
+  wire [23:0] queue_first_slot;
+  line_fifo #(.W(25), .ADDRESS_BITS(4)) queue (
       .clk(clk), .rst(rst), .flush(acknowledge), .push(line_valid), .push_data({line_is_odd, first_slot}),
       .commit(queue_commit), .rollback(1'b0), .pop(line_first), .low_level(6'd0), .valid(queue_valid),
       .data({queue_odd, queue_first_slot}), .level(), .almost_empty(), .full(), .overflow(queue_overflow)
@@ -139,12 +143,12 @@ module synchro #(
   );
   wire line_slot, line_decision, line_window, line_last, running;
   wire missing = slot && started && !running && slots_per_line != 0 && !queue_valid;
-  line_sequencer sequencer (
+  line_sequencer #(.W(24)) sequencer (
       .clk(clk), .rst(rst || !run), .slot(slot), .start(started), .slots_per_line(slots_per_line),
       .first_slot(queue_first_slot), .window_slots(window_slots), .slot_out(line_slot), .decision(line_decision),
       .window(line_window), .first(line_first), .last(line_last), .running(running)
   );
-  scanner_clock scanner (
+  scanner_clock #(.W(24)) scanner (
       .clk(clk), .rst(rst), .decision(line_decision), .first(line_first), .slots_per_microvector(slots_per_microvector),
       .scan(scan)
   );
@@ -197,17 +201,29 @@ module synchro #(
   wire [15:0] status = {referenced, almost_empty, started, index_lost, setting_refused, schedule_overflow != 0,
                         schedule_busy, ab_refused[1], overflow || queue_overflow, ab_refused[0], running, dark, fault};
   register_read #(.FIFO_BITS(FIFO_BITS)) reader (
-      .clk(clk), .rst(rst), .address(address), .control(control), .status(status), .level(level), .faults(faults_seen),
-      .index_error(index_error), .increment(increment), .prescaler(prescaler), .fraction_num(fraction_num),
-      .fraction_den(fraction_den), .increment_1(increment_1), .prescaler_1(prescaler_1), .fraction_num_1(fraction_num_1),
-      .fraction_den_1(fraction_den_1), .seeds_per_slot(seeds_per_slot), .slots_per_line(slots_per_line),
-      .window_slots(window_slots), .slots_per_microvector(slots_per_microvector),
-      .lines_per_revolution(lines_per_revolution), .position_revolution(position_revolution),
-      .position_line(position_line), .silence_limit(silence_limit), .first_tick(first_tick),
-      .reverse_delay(reverse_delay), .low_level(low_level), .correction_limit(correction_limit),
-      .index_window(index_window), .revolution_seeds(revolution_seeds), .schedule_increment(schedule_increment),
-      .schedule_seeds(schedule_seeds), .read_data(read_data)
+      .clk(clk), .rst(rst), .address(address), .status(status), .level(level), .faults(faults_seen),
+      .index_error(index_error), .store(store), .store_address(store_address), .store_data(store_data),
+      .read_data(read_data)
   );
   /* verilator lint_on PINCONNECTEMPTY */
+
+`ifdef FORMAL_TOP
+  // How the blocks are wired: whatever the host and the pins do, one clock after reset, a stop, an open interlock, any
+  // fault, a dark gate or an acknowledge the gate is closed; and it opens by a bit of a line in its window alone.
+  reg valid = 1'b0, must_close, may_open, was_gate, was_fault;
+  initial assume (rst);
+  always @(posedge clk) begin
+    valid <= 1'b1;
+    must_close <= rst || !run || interlock || fault != 0 || dark || acknowledge;
+    may_open <= gate_slot && decision && window;
+    was_gate <= gate;
+    was_fault <= fault != 0 && !rst && !acknowledge;
+  end
+  always @(*) if (valid) begin
+    if (must_close) assert (!gate);
+    if (gate && !was_gate) assert (may_open);
+    if (was_fault) assert (fault != 0);  // sticky until it is acknowledged
+  end
+`endif
 endmodule
 `default_nettype wire

@@ -62,8 +62,8 @@ struct FrameParserPorts {
     visit("in_valid", in.in_valid);
     visit("position_load", in.position_load);
     visit("in_data", in.in_data, 8);
-    visit("slots_per_line", in.slots_per_line, 16);
-    visit("window_slots", in.window_slots, 16);
+    visit("slots_per_line", in.slots_per_line, 24);
+    visit("window_slots", in.window_slots, 24);
     visit("lines_per_revolution", in.lines_per_revolution, 32);
     visit("position_revolution", in.position_revolution, 32);
     visit("position_line", in.position_line, 32);
@@ -78,7 +78,7 @@ struct FrameParserPorts {
     visit("shape_error", out.shape_error);
     visit("checksum_error", out.checksum_error);
     visit("push_data", out.push_data, 8);
-    visit("first_slot", out.first_slot, 16);
+    visit("first_slot", out.first_slot, 24);
     visit("odd", out.odd);
     visit("revolution", out.revolution, 32);
     visit("line", out.line, 32);
@@ -109,9 +109,9 @@ struct SettingsPorts {
     visit("fraction_num_1", out.fraction_num_1, 34);
     visit("fraction_den_1", out.fraction_den_1, 34);
     visit("seeds_per_slot", out.seeds_per_slot, 16);
-    visit("slots_per_line", out.slots_per_line, 16);
-    visit("window_slots", out.window_slots, 16);
-    visit("slots_per_microvector", out.slots_per_microvector, 16);
+    visit("slots_per_line", out.slots_per_line, 24);
+    visit("window_slots", out.window_slots, 24);
+    visit("slots_per_microvector", out.slots_per_microvector, 24);
     visit("lines_per_revolution", out.lines_per_revolution, 32);
     visit("position_revolution", out.position_revolution, 32);
     visit("position_line", out.position_line, 32);
@@ -124,6 +124,9 @@ struct SettingsPorts {
     visit("revolution_seeds", out.revolution_seeds, 48);
     visit("schedule_increment", out.schedule_increment, 32);
     visit("schedule_seeds", out.schedule_seeds, 32);
+    visit("store", out.store);
+    visit("store_address", out.store_address, 8);
+    visit("store_data", out.store_data, 32);
     visit("refused", out.refused);
   }
 };

@@ -54,9 +54,9 @@ struct LineSequencerPorts {
     visit("rst", in.rst);
     visit("slot", in.slot);
     visit("start", in.start);
-    visit("slots_per_line", in.slots_per_line, 16);
-    visit("first_slot", in.first_slot, 16);
-    visit("window_slots", in.window_slots, 16);
+    visit("slots_per_line", in.slots_per_line, 24);
+    visit("first_slot", in.first_slot, 24);
+    visit("window_slots", in.window_slots, 24);
   }
   template <class Out, class Visitor>
   static void out(Out& out, Visitor&& visit) {
@@ -127,7 +127,7 @@ struct ScannerClockPorts {
     visit("rst", in.rst);
     visit("decision", in.decision);
     visit("first", in.first);
-    visit("slots_per_microvector", in.slots_per_microvector, 16);
+    visit("slots_per_microvector", in.slots_per_microvector, 24);
   }
   template <class Out, class Visitor>
   static void out(Out& out, Visitor&& visit) {

@@ -128,6 +128,7 @@ void HostStimulus::set_up(Dice& dice) {
   write(fpga::kRevolutionSeedsRegister, lines * slots * seeds);
   write(fpga::kCommandRegister, 1);
   write(fpga::kCommandRegister, 2 + 8 + 16);
+  actions_.push_back({});  // the acknowledge drops a byte that comes two clocks behind it
   maker_.configure(slots, window, lines);
   line_ticks_ = slots * seeds;
   turn_ticks_ = lines * line_ticks_;

@@ -30,7 +30,10 @@ void check_together(const EmulateOptions& options, const CLI::App& verb) {
     }
   }
   if (options.rtl && given("--fault")) {
-    throw CLI::ValidationError("--rtl", "runs a host without mistakes: leave out --fault");
+    throw CLI::ValidationError("--rtl",
+                               "feeds the board byte by byte, and there a mistake closes the gate as soon as it is "
+                               "seen, not with its line as --fault counts: leave out --fault (the lock step of "
+                               "tests/cosim runs every fault through Verilog and model)");
   }
   for (const char* name : {"--bits", "--m", "--increment", "--clocks"}) {
     if (counter && !given(name)) {

@@ -164,8 +164,7 @@ Result<int> run_counter(const EmulateOptions& options, const Command& command) {
     print(fmt::format("{} clocks, {} edges, ends at A = {}, B = {}\n", options.clocks, end.edges, end.pins.a ? 1 : 0,
                       end.pins.b ? 1 : 0));
     if (options.rtl) {
-      print(fmt::format("Verilog: the same {} edges, every pin equal on {} clocks\n", end.edges,
-                        rtl.at("clocks").get<std::uint64_t>()));
+      print(rtl_text(rtl));
     }
   }
   return kDone;

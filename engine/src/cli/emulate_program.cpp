@@ -6,6 +6,7 @@
 
 #include "emulate.hpp"
 #include "emulate_rtl.hpp"
+#include "gravure/emulator/board_host.hpp"
 #include "gravure/emulator/emulated_device.hpp"
 #include "gravure/emulator/faults.hpp"
 #include "gravure/emulator/machine_waves.hpp"
@@ -225,25 +226,26 @@ Result<Json> lines_on_rtl(LineSource& program, Lines lines, const DeviceSetup& s
   emulator::BoardHost host(
       emulator::kRtlFifoBits,
       [&boards](const fpga::Synchro::Inputs& inputs, std::uint64_t clocks) { return boards.hold(inputs, clocks); });
-  GRAVURE_CHECK(host.start_lines(setup, program.header().plan.line.slots_per_microvector));
+  const LinePlan& line = program.header().plan.line;
+  GRAVURE_CHECK(host.start_lines(setup, {.slots_per_microvector = line.slots_per_microvector,
+                                         .backward_later_ticks = line.offset_remainder_ticks}));
   WireLink link(host);
   GRAVURE_CHECK(send_lines(program, lines, link));
   GRAVURE_CHECK(host.finish());
+  GRAVURE_CHECK(boards.check());
   if (boards.fault() != 0) {
     return Error{ErrorCode::device, fmt::format("Verilog and model stopped with fault {} ({})", boards.fault(),
                                                 to_string(static_cast<DeviceFault>(boards.fault())))};
   }
   GRAVURE_CHECK(host.close());
+  GRAVURE_CHECK(boards.check());
   const auto expected = static_cast<std::uint64_t>(fired * setup.ticks_per_slot);
   if (boards.gate_clocks() != expected) {
     return Error{ErrorCode::device,
                  fmt::format("the gate of the Verilog was open for {} clocks, that of the lines is {}",
                              boards.gate_clocks(), expected)};
   }
-  return Json{{"clocks", json_integer(Integer(boards.clocks()))},
-              {"edges", json_integer(Integer(boards.edges()))},
-              {"gate_clocks", json_integer(Integer(boards.gate_clocks()))},
-              {"differences", 0}};
+  return boards.counts();
 }
 
 struct Run {
@@ -312,8 +314,7 @@ void print_run(const EmulateOptions& options, const Command& command, const Plan
                         static_cast<int>(lines.fault), to_string(lines.fault), lines.detail);
   }
   if (run.rtl) {
-    text += fmt::format("Verilog: every pin equal on {} clocks, the gate open for the same slots\n",
-                        run.rtl->at("clocks").get<std::uint64_t>());
+    text += rtl_text(*run.rtl);
   }
   print(text);
 }
@@ -340,6 +341,8 @@ Result<int> run_program(const EmulateOptions& options, const Command& command) {
   const std::int64_t per_revolution = plan.rotary.lines_per_revolution;
   Run run;
   GRAVURE_TRY(run.window, window_of(options, plan));
+  GRAVURE_CHECK(
+      emulator::check_backward_delay(plan.line.offset_remainder_ticks, plan.clock.fpga_hz / plan.clock.seed_hz));
   GRAVURE_TRY(const Mistakes mistakes, mistakes_of(options, device_setup(plan, 0, 0)));
   const std::uint64_t end = static_cast<std::uint64_t>(plan.job.ticks);
   const bool windowed = options.from || options.to;

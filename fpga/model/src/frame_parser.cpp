@@ -3,11 +3,7 @@
 namespace gravure::fpga {
 namespace {
 
-constexpr unsigned kPlaceMask = 0x1FFF;
-
-unsigned window_bytes(const FrameParser::Inputs& in) noexcept {
-  return (in.window_slots + 7U) / 8U;
-}
+constexpr unsigned kPlaceMask = 0x1F'FFFF;
 
 std::uint8_t byte_of(std::uint64_t word, unsigned number) noexcept {
   return static_cast<std::uint8_t>(word >> (8 * number));
@@ -39,22 +35,23 @@ void FrameParser::take_head(const Inputs& in, unsigned place) noexcept {
   } else if (place < 16) {
     bad_sequence_ = bad_sequence_ || in.in_data != byte_of(out_.line, place - 8);
   } else if (place == 16) {
-    new_first_slot_ = static_cast<std::uint16_t>((new_first_slot_ & 0xFF00U) | in.in_data);
+    new_first_slot_ = (new_first_slot_ & 0xFFFF00U) | in.in_data;
   } else if (place == 17) {
-    new_first_slot_ =
-        static_cast<std::uint16_t>((new_first_slot_ & 0x00FFU) | (static_cast<unsigned>(in.in_data) << 8U));
+    new_first_slot_ = (new_first_slot_ & 0xFF00FFU) | (static_cast<unsigned>(in.in_data) << 8U);
+  } else if (place == 18) {
+    new_first_slot_ = (new_first_slot_ & 0x00FFFFU) | (static_cast<unsigned>(in.in_data) << 16U);
   } else {
     bad_shape_ = bad_shape_ || in.in_data != 0;
   }
   if (place == 23) {
-    enter(window_bytes(in) == 0 ? Part::check : Part::bits);
+    enter(in.window_slots == 0 ? Part::check : Part::bits);
   }
 }
 
 void FrameParser::take_bits(const Inputs& in, unsigned place) noexcept {
   out_.push = true;
   out_.push_data = in.in_data;
-  if (place == ((window_bytes(in) - 1) & kPlaceMask)) {
+  if (place == sums_.last_place) {
     const unsigned used = in.window_slots % 8U;
     bad_shape_ = bad_shape_ || (used != 0 && (in.in_data & (0xFFU >> used)) != 0);
     enter(Part::check);
@@ -122,8 +119,10 @@ FrameParser::Outputs FrameParser::step(const Inputs& now) noexcept {
                     .valid = in.in_valid && (part_ == Part::head || part_ == Part::bits),
                     .data = in.in_data})
              .crc;
-  const Sums sums{.window_end = static_cast<std::uint32_t>(new_first_slot_) + in.window_slots,
-                  .next_line = out_.line + 1};
+  const Sums sums{.window_end = new_first_slot_ + in.window_slots,
+                  .next_line = out_.line + 1,
+                  .window_bytes = (in.window_slots + 7U) / 8U,
+                  .last_place = (sums_.window_bytes - 1) & kPlaceMask};
   const bool window_fits = sums_.window_end <= in.slots_per_line;
   const bool last_line = sums_.next_line >= in.lines_per_revolution;
   out_.push = out_.commit = out_.rollback = out_.line_valid = false;

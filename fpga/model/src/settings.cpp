@@ -1,6 +1,7 @@
 #include "gravure/fpga/settings.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace gravure::fpga {
 namespace {
@@ -18,15 +19,27 @@ bool is_low_word(std::uint8_t address) noexcept {
          address == kRevolutionSeedsRegister.address;
 }
 
+constexpr std::array<bool, 256> kReadsBack = [] {
+  std::array<bool, 256> known{};
+  for (const StoredWord& word : kStoredWords) {
+    known[word.address] = true;
+  }
+  return known;
+}();
+
+/// 0 where a range begins with 1, or more bits than the register has.
+bool is_bad(std::uint8_t address, std::uint32_t data) noexcept {
+  const bool zero =
+      data == 0 && std::find(kNotZeroAddresses.begin(), kNotZeroAddresses.end(), address) != kNotZeroAddresses.end();
+  return zero || (data & unused_bits(address)) != 0;
+}
+
 }  // namespace
 
-bool Settings::refuses(const Inputs& in) const noexcept {
+bool Settings::refuses() const noexcept {
   const bool runs = (out_.control & 1U) != 0;
-  const bool zero = in.write_data == 0 && std::find(kNotZeroAddresses.begin(), kNotZeroAddresses.end(), in.address) !=
-                                              kNotZeroAddresses.end();
-  const bool starts = in.address == kControlRegister.address && (in.write_data & 1U) != 0 && !runs;
-  const bool wide = (in.write_data & unused_bits(in.address)) != 0;
-  return zero || wide || (is_line_setting(in.address) && runs) || (starts && (!fits_ || young_ != 0));
+  const bool starts = word_.address == kControlRegister.address && (word_.data & 1U) != 0 && !runs;
+  return word_.bad || (is_line_setting(word_.address) && runs) || (starts && (!fits_ || young_ != 0));
 }
 
 void Settings::take(std::uint8_t address, std::uint32_t data) noexcept {
@@ -67,13 +80,13 @@ void Settings::take(std::uint8_t address, std::uint32_t data) noexcept {
       out_.seeds_per_slot = half;
       break;
     case kSlotsPerLineRegister.address:
-      out_.slots_per_line = half;
+      out_.slots_per_line = data;
       break;
     case kWindowSlotsRegister.address:
-      out_.window_slots = half;
+      out_.window_slots = data;
       break;
     case kSlotsPerMicrovectorRegister.address:
-      out_.slots_per_microvector = half;
+      out_.slots_per_microvector = data;
       break;
     case kLinesPerRevolutionRegister.address:
       out_.lines_per_revolution = data;
@@ -119,8 +132,20 @@ void Settings::take(std::uint8_t address, std::uint32_t data) noexcept {
   }
 }
 
+void Settings::show_store() noexcept {
+  out_.store = word_.asked && !refuses() && kReadsBack[word_.address];
+  out_.store_address = word_.address;
+  out_.store_data = word_.data;
+}
+
 Settings::Outputs Settings::step(const Inputs& in) noexcept {
-  const bool refused = in.write && refuses(in);
+  const bool refused = word_.asked && refuses();
+  const bool taken = word_.asked && !refused;
+  const Word word = word_;
+  word_ = {.asked = in.write && !in.rst,
+           .bad = in.write && is_bad(in.address, in.write_data),
+           .address = in.address,
+           .data = in.write_data};
   const std::uint32_t slack = out_.correction_limit == 0 ? 1U : out_.correction_limit + 8U;
   fits_ = out_.slots_per_line != 0 && out_.window_slots <= out_.slots_per_line && least_slot_ <= out_.seeds_per_slot;
   least_slot_ = out_.reverse_delay + slack;
@@ -129,14 +154,15 @@ Settings::Outputs Settings::step(const Inputs& in) noexcept {
     out_ = {};
     low_word_ = 0;
     young_ = kCheckClocks;
+    show_store();
     return out_;
   }
-  const bool taken = in.write && !refused;
   out_.refused = refused || (out_.refused && !in.clear);
-  young_ = taken && is_line_setting(in.address) ? kCheckClocks : std::max(young_ - 1, 0);
+  young_ = taken && is_line_setting(word.address) ? kCheckClocks : std::max(young_ - 1, 0);
   if (taken) {
-    take(in.address, in.write_data);
+    take(word.address, word.data);
   }
+  show_store();
   return out_;
 }
 

@@ -37,7 +37,7 @@ bool has(const Settings::Outputs& settings, Command bit) noexcept {
   return (settings.command & bit) != 0;
 }
 
-constexpr std::uint32_t kOddLine = 0x10000;  ///< in an entry of the line queue
+constexpr std::uint32_t kOddLine = 0x100'0000;  ///< in an entry of the line queue
 
 }  // namespace
 
@@ -130,7 +130,7 @@ void Synchro::step_lines(const Inputs& in, const Wires& was) noexcept {
                           .slot = was.slots.slot,
                           .start = was.start.started,
                           .slots_per_line = s.slots_per_line,
-                          .first_slot = static_cast<std::uint16_t>(was.queue.data),
+                          .first_slot = was.queue.data & (kOddLine - 1),
                           .window_slots = s.window_slots});
   now_.scanner = scanner_.step({.rst = in.rst,
                                 .decision = was.line.decision,
@@ -220,7 +220,9 @@ void Synchro::step_seed(const Inputs& in) noexcept {
                           .level = was.bits.level,
                           .faults = was.faults.seen,
                           .index_error = was.reference.error,
-                          .settings = was.settings});
+                          .store = was.settings.store,
+                          .store_address = was.settings.store_address,
+                          .store_data = was.settings.store_data});
   now_.settings = settings_.step({.rst = in.rst,
                                   .clear = has(was.settings, kAcknowledge),
                                   .write = in.write,

@@ -53,7 +53,7 @@ std::uint64_t SynchroEvents::reference_still_for() const noexcept {
   if ((control & kReference) == 0 || (control & kRun) == 0) {
     return kForEver;
   }
-  if (reference.wanted_ || reference.missing_) {
+  if (reference.wanted_ || reference.missing_ || reference.late_) {
     return 0;
   }
   const std::int64_t before_missing = reference.ahead_ + board_.now_.settings.index_window + 1;
@@ -108,6 +108,7 @@ void SynchroEvents::jump(std::uint64_t seed_clocks) noexcept {
     const std::int64_t before = reference.ahead_ + 1;
     reference.near_ = before <= window && before >= -window;
     reference.early_ = before > window;
+    reference.late_ = before < -window;
   }
   if (board_.delay_.waiting_) {
     board_.delay_.left_ = static_cast<std::uint16_t>(board_.delay_.left_ - seed_clocks);

@@ -22,10 +22,19 @@ Error refusal(const std::string& what) {
 
 }  // namespace
 
+Result<void> check_backward_delay(std::int64_t later_ticks, std::int64_t clock_multiplier) {
+  if (later_ticks % clock_multiplier == 0) {
+    return {};
+  }
+  return refusal("a bidirectional offset that leaves " + std::to_string(later_ticks) +
+                 " ticks beside whole slots: it delays by whole seed clocks of " + std::to_string(clock_multiplier) +
+                 " ticks; make scanner.bidirectional_offset_ticks a multiple of " + std::to_string(clock_multiplier));
+}
+
 Result<void> BoardHost::write(const fpga::Register& target, std::uint64_t value) {
-  if (target.bits < 64 && (value >> static_cast<unsigned>(target.bits)) != 0) {
+  if (value > fpga::largest(target)) {
     return refusal(std::string(target.name) + " = " + std::to_string(value) + ": allowed is 0 to " +
-                   std::to_string((std::uint64_t{1} << static_cast<unsigned>(target.bits)) - 1));
+                   std::to_string(fpga::largest(target)));
   }
   for (int word = 0; word < (target.bits > 32 ? 2 : 1); ++word) {
     fpga::Synchro::Inputs in;
@@ -67,8 +76,26 @@ Result<void> BoardHost::start_axis(const DeviceSetup& setup) {
   return write(fpga::kCommandRegister, kLoad);
 }
 
-Result<void> BoardHost::start_lines(const DeviceSetup& setup, std::int64_t slots_per_microvector) {
-  constexpr std::uint64_t kRunEnableTimed = 1U | 2U | 8U | 16U;
+/// A delay is less than a slot and never negative: to come earlier is to begin a slot earlier and wait for the rest.
+Result<void> BoardHost::write_delay(const DeviceSetup& setup, std::int64_t later_ticks) {
+  constexpr auto kTicks = static_cast<std::int64_t>(kSeedClock);
+  GRAVURE_CHECK(check_backward_delay(later_ticks, kTicks));
+  backward_one_earlier_ = later_ticks < 0;
+  const std::int64_t delay = later_ticks + (backward_one_earlier_ ? setup.ticks_per_slot : 0);
+  if (delay != 0) {
+    constexpr std::uint64_t kBackward = 32;
+    control_ |= kBackward;
+  }
+  return write(fpga::kReverseDelayRegister, static_cast<std::uint64_t>(delay / kTicks));
+}
+
+bool BoardHost::is_backward(const LineFrame& frame) const {
+  return ((frame.revolution * lines_per_revolution_ + frame.line) & 1) != 0;
+}
+
+Result<void> BoardHost::start_lines(const DeviceSetup& setup, const Lines& lines) {
+  control_ = 1U | 2U | 8U | 16U;  // run slots, enable both axes, lines begin at the tick
+  lines_per_revolution_ = setup.lines_per_revolution;
   constexpr std::uint64_t kAcknowledge = 1;
   constexpr std::uint64_t kPositionAndGo = 8U | 64U;
   const auto bytes = static_cast<std::uint64_t>((setup.window_slots + 7) / 8);
@@ -90,7 +117,8 @@ Result<void> BoardHost::start_lines(const DeviceSetup& setup, std::int64_t slots
   GRAVURE_CHECK(write(fpga::kSeedsPerSlotRegister, seeds_per_slot));
   GRAVURE_CHECK(write(fpga::kSlotsPerLineRegister, static_cast<std::uint64_t>(setup.slots_per_line)));
   GRAVURE_CHECK(write(fpga::kWindowSlotsRegister, static_cast<std::uint64_t>(setup.window_slots)));
-  GRAVURE_CHECK(write(fpga::kSlotsPerMicrovectorRegister, static_cast<std::uint64_t>(slots_per_microvector)));
+  GRAVURE_CHECK(write(fpga::kSlotsPerMicrovectorRegister, static_cast<std::uint64_t>(lines.slots_per_microvector)));
+  GRAVURE_CHECK(write_delay(setup, lines.backward_later_ticks));
   GRAVURE_CHECK(write(fpga::kLinesPerRevolutionRegister, static_cast<std::uint64_t>(setup.lines_per_revolution)));
   GRAVURE_CHECK(write(fpga::kPositionRevolutionRegister, static_cast<std::uint64_t>(setup.first_revolution)));
   GRAVURE_CHECK(write(fpga::kPositionLineRegister, static_cast<std::uint64_t>(setup.first_line)));
@@ -98,7 +126,7 @@ Result<void> BoardHost::start_lines(const DeviceSetup& setup, std::int64_t slots
   GRAVURE_CHECK(write(fpga::kFirstTickRegister, lead));
   GRAVURE_CHECK(write(fpga::kCommandRegister, kAcknowledge));
   GRAVURE_CHECK(wait(kLead * kSeedClock));
-  GRAVURE_CHECK(write(fpga::kControlRegister, kRunEnableTimed));
+  GRAVURE_CHECK(write(fpga::kControlRegister, control_));
   GRAVURE_CHECK(write(fpga::kCommandRegister, kPositionAndGo));
   now_ = 0;
   first_line_ = lead;
@@ -134,6 +162,19 @@ Result<void> BoardHost::send(const LineFrame& frame) {
     GRAVURE_CHECK(wait_until(first_line_ + (sent_ - 1) * line_seeds_ + kLead / 2));
   }
   ++sent_;
+  if (!backward_one_earlier_ || !is_backward(frame)) {
+    return put(frame);
+  }
+  if (frame.first_slot == 0) {
+    return refusal("a backward line in slot 0 that should begin earlier by part of a slot");
+  }
+  LineFrame earlier = frame;
+  --earlier.first_slot;
+  earlier.crc32c = frame_crc32c(earlier);
+  return put(earlier);
+}
+
+Result<void> BoardHost::put(const LineFrame& frame) {
   GRAVURE_CHECK(byte(fpga::FrameParser::kFrameKind));
   GRAVURE_CHECK(word(static_cast<std::uint64_t>(frame.revolution), 8));
   GRAVURE_CHECK(word(static_cast<std::uint64_t>(frame.line), 8));

@@ -6,13 +6,18 @@
 #include <string_view>
 
 #include "gravure/emulator/emulated_device.hpp"
-#include "gravure/fpga/pulse_gate.hpp"
+#include "gravure/fpga/register_map.hpp"
 
 namespace gravure::emulator {
 namespace {
 
 constexpr std::int64_t kMaxTick = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t kMaxWord32 = std::numeric_limits<std::uint32_t>::max();
+
+constexpr std::int64_t most_of(const fpga::Register& one) {
+  return static_cast<std::int64_t>(fpga::largest(one));
+}
+
+constexpr std::int64_t kMaxTicksPerSlot = most_of(fpga::kSeedsPerSlotRegister) * fpga::kClockMultiplierRange.high;
 
 /// Collects one line for each refused field.
 class Refusals {
@@ -34,6 +39,14 @@ class Refusals {
       add(field, std::to_string(value), std::to_string(low) + " to " + std::to_string(high));
     }
   }
+  /// A value of 1 or more in a register; false where it is refused.
+  bool word(std::string_view field, std::uint64_t value, const fpga::Register& one, std::string_view remedy = {}) {
+    const bool fits = value >= 1 && value <= fpga::largest(one);
+    if (!fits) {
+      add(field, std::to_string(value), "1 to " + std::to_string(fpga::largest(one)), remedy);
+    }
+    return fits;
+  }
   bool empty() const { return text_.empty(); }
   Result<void> result() const { return text_.empty() ? Result<void>() : Error{ErrorCode::device, text_}; }
 
@@ -43,12 +56,10 @@ class Refusals {
 
 /// `prefix` is that of the fields of a channel; `registers` are its values.
 void check_counter(const std::string& prefix, const fpga::AbRegisters& registers, Refusals& refusals) {
-  if (registers.prescaler == 0) {
-    refusals.add(prefix + "prescaler", "0", "1 or more");
-  }
-  if (registers.fraction_den == 0) {
-    refusals.add(prefix + "fraction_den", "0", "1 or more", "0/1 turns the fraction off");
-  } else if (registers.fraction_num >= registers.fraction_den) {
+  refusals.word(prefix + "prescaler", registers.prescaler, fpga::kPrescalerRegister);
+  const bool has_den = refusals.word(prefix + "fraction_den", registers.fraction_den, fpga::kFractionDenRegister,
+                                     "0/1 turns the fraction off");
+  if (has_den && registers.fraction_num >= registers.fraction_den) {
     refusals.add(prefix + "fraction_num", std::to_string(registers.fraction_num),
                  "0 to " + std::to_string(registers.fraction_den - 1), "put whole counts into the increment");
   }
@@ -60,14 +71,14 @@ void check_counter(const std::string& prefix, const fpga::AbRegisters& registers
 }
 
 void check_counters(const DeviceSetup& setup, Refusals& refusals) {
-  refusals.range("counter_bits", setup.counter_bits, kMinCounterBits, fpga::kMaxCounterBits);
+  refusals.range("counter_bits", setup.counter_bits, fpga::kCounterBitsRange.low, fpga::kCounterBitsRange.high);
   check_counter("", ab_registers_of(setup), refusals);
   check_counter("carriage.", carriage_registers_of(setup), refusals);
 }
 
 void check_line(const DeviceSetup& setup, Refusals& refusals) {
-  refusals.range("ticks_per_slot", setup.ticks_per_slot, 1, kMaxWord32);
-  refusals.range("slots_per_line", setup.slots_per_line, 1, kMaxWord32);
+  refusals.range("ticks_per_slot", setup.ticks_per_slot, 1, kMaxTicksPerSlot);
+  refusals.range("slots_per_line", setup.slots_per_line, 1, most_of(fpga::kSlotsPerLineRegister));
   if (setup.window_slots > setup.slots_per_line && setup.slots_per_line >= 1) {
     refusals.add("window_slots", std::to_string(setup.window_slots), "0 to " + std::to_string(setup.slots_per_line),
                  "the window must lie inside the line");
@@ -77,11 +88,11 @@ void check_line(const DeviceSetup& setup, Refusals& refusals) {
 }
 
 void check_job(const DeviceSetup& setup, Refusals& refusals) {
-  refusals.range("lines_per_revolution", setup.lines_per_revolution, 1, kMaxTick);
+  refusals.range("lines_per_revolution", setup.lines_per_revolution, 1, most_of(fpga::kLinesPerRevolutionRegister));
   if (setup.lines_per_revolution >= 1) {
     refusals.range("first_line", setup.first_line, 0, setup.lines_per_revolution - 1);
   }
-  refusals.range("revolutions", setup.revolutions, 1, kMaxTick);
+  refusals.range("revolutions", setup.revolutions, 1, most_of(fpga::kPositionRevolutionRegister) + 1);
   if (setup.revolutions >= 1) {
     refusals.range("first_revolution", setup.first_revolution, 0, setup.revolutions - 1);
   }

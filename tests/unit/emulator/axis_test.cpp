@@ -17,7 +17,7 @@ DeviceSetup random_setup(std::mt19937_64& rng) {
   DeviceSetup setup = small_setup();
   setup.counter_bits = static_cast<int>(8 + rng() % 57);
   setup.prescaler = 1 + rng() % 5;
-  setup.fraction_den = (rng() >> (rng() % 64)) | 1U;
+  setup.fraction_den = (rng() >> (30 + rng() % 34)) | 1U;
   setup.fraction_num = rng() % setup.fraction_den;
   setup.increment = rng() % (std::uint64_t{1} << static_cast<unsigned>(setup.counter_bits - 2));
   setup.ticks_per_slot = static_cast<std::int64_t>(1 + rng() % 7);

@@ -53,7 +53,7 @@ class BoardHostOnModel : public testing::Test {
 };
 
 TEST_F(BoardHostOnModel, OpensTheGateForTheSlotsOfEveryLine) {
-  ASSERT_TRUE(host_.start_lines(board_setup(), 5));
+  ASSERT_TRUE(host_.start_lines(board_setup(), {.slots_per_microvector = 5}));
   for (std::int64_t line = 0; line < 12; ++line) {
     test::Frame frame(line / 4, line % 4);
     ASSERT_TRUE(host_.send(*frame));
@@ -82,13 +82,52 @@ TEST_F(BoardHostOnModel, OpensTheGateForTheSlotsOfEveryLine) {
   }
 }
 
+/// Where the gate opened first in every line, in clocks from where that of line 0 did; lines fire from slot 3 + line
+/// on.
+std::vector<std::uint64_t> line_starts(const std::vector<std::uint64_t>& openings, std::uint64_t line_clocks) {
+  std::vector<std::uint64_t> starts;
+  for (const std::uint64_t clock : openings) {
+    const std::uint64_t after = clock - openings.front();
+    if (starts.empty() || after / line_clocks > starts.back() / line_clocks) {
+      starts.push_back(after);
+    }
+  }
+  return starts;
+}
+
+TEST_F(BoardHostOnModel, MovesBackwardLinesByPartOfASlot) {
+  for (const std::int64_t later : {2, -2}) {
+    board_ = fpga::SynchroEvents(kRtlFifoBits);
+    before_ = {};
+    openings_.clear();
+    ASSERT_TRUE(host_.start_lines(board_setup(), {.slots_per_microvector = 5, .backward_later_ticks = later}));
+    for (std::int64_t line = 0; line < 4; ++line) {
+      test::Frame frame(0, line);
+      ASSERT_TRUE(host_.send(*frame));
+    }
+    ASSERT_TRUE(host_.finish());
+    EXPECT_EQ(before_.fault, 0);
+    std::vector<std::uint64_t> clocks;
+    for (const Opening& opening : openings_) {
+      clocks.push_back(opening.clock);
+    }
+    const auto moved = static_cast<std::uint64_t>(later);  // wraps for -2, and back where it is added
+    const std::vector<std::uint64_t> expected{0, 121 * 4 + moved, 242 * 4, 363 * 4 + moved};
+    EXPECT_EQ(line_starts(clocks, 480), expected) << "later by " << later;
+  }
+}
+
+TEST_F(BoardHostOnModel, RefusesAnOffsetOfHalfASeedClock) {
+  test::expect_refused(host_.start_lines(board_setup(), {.slots_per_microvector = 5, .backward_later_ticks = 3}),
+                       {"the board refuses", "leaves 3 ticks", "bidirectional_offset_ticks"});
+}
+
 TEST_F(BoardHostOnModel, RunsTheAxesAlone) {
   DeviceSetup setup = board_setup();
   setup.carriage = {.prescaler = 3, .increment = 123'456'789};
   ASSERT_TRUE(host_.start_axis(setup));
   constexpr std::uint64_t kClocks = 100'000;
-  constexpr auto kLoad = static_cast<std::uint64_t>(fpga::AbGenerator::load_latency(fpga::Synchro::kAxisWidths));
-  ASSERT_TRUE(host_.wait(kClocks + kLoad + 1));
+  ASSERT_TRUE(host_.wait(kClocks + BoardHost::kAxisLatency));
   const fpga::AbRegisters registers{32, setup.prescaler, setup.increment, setup.fraction_num, setup.fraction_den};
   EXPECT_EQ(edges_, fpga::position_after(registers, kClocks).edges);
   const fpga::AbRegisters carriage{32, 3, 123'456'789, 0, 1};
@@ -99,14 +138,14 @@ TEST_F(BoardHostOnModel, RefusesWhatDoesNotFitTheBoard) {
   const auto refused = [this](auto change, const char* part) {
     DeviceSetup setup = board_setup();
     change(setup);
-    test::expect_refused(host_.start_lines(setup, 5), {"the board refuses", part});
+    test::expect_refused(host_.start_lines(setup, {.slots_per_microvector = 5}), {"the board refuses", part});
   };
   refused([](DeviceSetup& setup) { setup.counter_bits = 31; }, "counter_bits = 31");
   refused([](DeviceSetup& setup) { setup.fraction_den = std::uint64_t{1} << 34U; }, "fraction_den = 17179869184");
   refused([](DeviceSetup& setup) { setup.increment = (1U << 30U) + 1; }, "increment = 1073741825");
   refused([](DeviceSetup& setup) { setup.carriage = {1, 5, 1, 2}; }, "carriage.fraction_num = 1: its second axis");
   refused([](DeviceSetup& setup) { setup.ticks_per_slot = 3; }, "ticks_per_slot = 3");
-  refused([](DeviceSetup& setup) { setup.slots_per_line = 70'000; }, "slots_per_line = 70000");
+  refused([](DeviceSetup& setup) { setup.slots_per_line = 16'777'216; }, "slots_per_line = 16777216");
   refused([](DeviceSetup& setup) { setup.window_slots = setup.slots_per_line = 20'000; }, "FIFO of 4096 bytes");
   refused([](DeviceSetup& setup) { setup.slots_per_line = 20; }, "takes longer");
 }

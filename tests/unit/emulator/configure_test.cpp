@@ -11,8 +11,6 @@ namespace {
 using test::expect_refused;
 using test::small_setup;
 
-constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
-
 void expect_refused_with(const std::function<void(DeviceSetup&)>& change, std::initializer_list<std::string> parts) {
   DeviceSetup setup = small_setup();
   change(setup);
@@ -33,13 +31,15 @@ TEST(EmulatedDeviceConfigure, TakesTheExtremes) {
   takes([](DeviceSetup& s) { s.increment = (1U << 14U) - 1; });
   takes([](DeviceSetup& s) { s.increment = 1U << 14U, s.fraction_num = 0; });
   takes([](DeviceSetup& s) { s.counter_bits = 8, s.increment = 63; });
-  takes([](DeviceSetup& s) { s.counter_bits = 64, s.fraction_den = ~std::uint64_t{0}, s.prescaler = s.fraction_den; });
+  takes([](DeviceSetup& s) { s.counter_bits = 64, s.fraction_den = 17'179'869'183, s.prescaler = 4'294'967'295; });
   takes([](DeviceSetup& s) { s.window_slots = 0; });
   takes([](DeviceSetup& s) { s.window_slots = s.slots_per_line; });
   takes([](DeviceSetup& s) {
     s.slots_per_line = s.ticks_per_slot = s.revolutions = s.lines_per_revolution = 1, s.window_slots = 1;
   });
-  takes([](DeviceSetup& s) { s.lines_per_revolution = 1, s.revolutions = kMax / 60; });
+  takes([](DeviceSetup& s) { s.revolutions = 4'294'967'296; });
+  takes([](DeviceSetup& s) { s.slots_per_line = 16'777'215, s.window_slots = 262'144; });
+  takes([](DeviceSetup& s) { s.ticks_per_slot = 1'048'560; });
   takes([](DeviceSetup& s) { s.first_revolution = 2, s.first_line = 3; });
 }
 
@@ -47,8 +47,10 @@ TEST(EmulatedDeviceConfigure, RefusesCounterRegisters) {
   expect_refused_with([](DeviceSetup& s) { s.counter_bits = 7; }, {"counter_bits = 7", "8 to 64"});
   expect_refused_with([](DeviceSetup& s) { s.counter_bits = 65; }, {"counter_bits = 65", "8 to 64"});
   expect_refused_with([](DeviceSetup& s) { s.counter_bits = -1; }, {"counter_bits = -1", "8 to 64"});
-  expect_refused_with([](DeviceSetup& s) { s.prescaler = 0; }, {"prescaler = 0", "1 or more"});
-  expect_refused_with([](DeviceSetup& s) { s.fraction_den = 0; }, {"fraction_den = 0", "1 or more"});
+  expect_refused_with([](DeviceSetup& s) { s.prescaler = 0; }, {"prescaler = 0", "1 to 4294967295"});
+  expect_refused_with([](DeviceSetup& s) { s.fraction_den = 0; }, {"fraction_den = 0", "1 to 17179869183"});
+  expect_refused_with([](DeviceSetup& s) { s.fraction_den = 17'179'869'184; }, {"fraction_den = 17179869184"});
+  expect_refused_with([](DeviceSetup& s) { s.prescaler = 4'294'967'296; }, {"prescaler = 4294967296"});
   expect_refused_with([](DeviceSetup& s) { s.fraction_num = 7; }, {"fraction_num = 7", "0 to 6"});
   expect_refused_with([](DeviceSetup& s) { s.increment = 1U << 14U; }, {"increment = 16384", "0 to 16383"});
   expect_refused_with([](DeviceSetup& s) { s.increment = (1U << 14U) + 1, s.fraction_num = 0; },
@@ -57,15 +59,16 @@ TEST(EmulatedDeviceConfigure, RefusesCounterRegisters) {
 }
 
 TEST(EmulatedDeviceConfigure, RefusesLineRegisters) {
-  expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = 0; }, {"ticks_per_slot = 0", "1 to 4294967295"});
+  expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = 0; }, {"ticks_per_slot = 0", "1 to 1048560"});
   expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = -3; }, {"ticks_per_slot = -3"});
-  expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = 4'294'967'296; }, {"ticks_per_slot = 4294967296"});
-  expect_refused_with([](DeviceSetup& s) { s.slots_per_line = 0; }, {"slots_per_line = 0", "1 to 4294967295"});
+  expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = 1'048'561; }, {"ticks_per_slot = 1048561"});
+  expect_refused_with([](DeviceSetup& s) { s.slots_per_line = 0; }, {"slots_per_line = 0", "1 to 16777215"});
+  expect_refused_with([](DeviceSetup& s) { s.slots_per_line = 16'777'216; }, {"slots_per_line = 16777216"});
   expect_refused_with([](DeviceSetup& s) { s.slots_per_line = -1; }, {"slots_per_line = -1"});
   expect_refused_with([](DeviceSetup& s) { s.window_slots = 21; }, {"window_slots = 21", "0 to 20", "inside the line"});
-  expect_refused_with([](DeviceSetup& s) { s.window_slots = -1; }, {"window_slots = -1", "0 to 16777216"});
-  expect_refused_with([](DeviceSetup& s) { s.slots_per_line = s.window_slots = 16'777'217; },
-                      {"window_slots = 16777217", "0 to 16777216"});
+  expect_refused_with([](DeviceSetup& s) { s.window_slots = -1; }, {"window_slots = -1", "0 to 262144"});
+  expect_refused_with([](DeviceSetup& s) { s.slots_per_line = s.window_slots = 262'145; },
+                      {"window_slots = 262145", "0 to 262144"});
 }
 
 TEST(EmulatedDeviceConfigure, RefusesJobRegisters) {
@@ -76,9 +79,11 @@ TEST(EmulatedDeviceConfigure, RefusesJobRegisters) {
   expect_refused_with([](DeviceSetup& s) { s.first_line = 4; }, {"first_line = 4", "0 to 3"});
   expect_refused_with([](DeviceSetup& s) { s.first_line = -1; }, {"first_line = -1", "0 to 3"});
   expect_refused_with([](DeviceSetup& s) { s.first_revolution = -1; }, {"first_revolution = -1", "0 to 2"});
-  expect_refused_with([](DeviceSetup& s) { s.lines_per_revolution = 1, s.revolutions = kMax / 60 + 1; },
-                      {"revolutions = 153722867280912931", "9223372036854775807 ticks"});
-  expect_refused_with([](DeviceSetup& s) { s.lines_per_revolution = kMax; }, {"9223372036854775807 ticks"});
+  expect_refused_with([](DeviceSetup& s) { s.lines_per_revolution = 4'294'967'296; },
+                      {"lines_per_revolution = 4294967296", "1 to 4294967295"});
+  expect_refused_with([](DeviceSetup& s) { s.revolutions = 4'294'967'297; }, {"revolutions = 4294967297"});
+  expect_refused_with([](DeviceSetup& s) { s.revolutions = s.lines_per_revolution = 4'294'967'295; },
+                      {"revolutions = 4294967295", "9223372036854775807 ticks"});
 }
 
 TEST(EmulatedDeviceConfigure, SaysEveryViolationOnce) {

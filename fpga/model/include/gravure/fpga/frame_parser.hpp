@@ -20,8 +20,8 @@ class FrameParser {
     bool in_valid = false;
     bool position_load = false;  ///< sets the line that must come next
     std::uint8_t in_data = 0;
-    std::uint16_t slots_per_line = 0;
-    std::uint16_t window_slots = 0;
+    std::uint32_t slots_per_line = 0;  ///< 24 bits
+    std::uint32_t window_slots = 0;    ///< 24 bits
     std::uint32_t lines_per_revolution = 0;
     std::uint32_t position_revolution = 0;
     std::uint32_t position_line = 0;
@@ -35,7 +35,7 @@ class FrameParser {
     bool shape_error = false;
     bool checksum_error = false;
     std::uint8_t push_data = 0;
-    std::uint16_t first_slot = 0;  ///< of the line committed last
+    std::uint32_t first_slot = 0;  ///< of the line committed last
     bool odd = false;              ///< its number, counted from the job's first line, is odd
     std::uint32_t revolution = 0;  ///< that must come next
     std::uint32_t line = 0;
@@ -47,8 +47,10 @@ class FrameParser {
  private:
   /// Registers on the way from the settings to the verdict.
   struct Sums {
-    std::uint32_t window_end = 0;  ///< 17 bits
+    std::uint32_t window_end = 0;  ///< 25 bits
     std::uint32_t next_line = 1;
+    std::uint32_t window_bytes = 0;
+    std::uint32_t last_place = 0;  ///< of the window's bytes, 21 bits
   };
   enum class Part : std::uint8_t { idle, head, bits, check };
 
@@ -62,7 +64,7 @@ class FrameParser {
   void enter(Part part) noexcept;
 
   Part part_ = Part::idle;
-  unsigned place_ = 0;  ///< byte within the part; 13 bits
+  unsigned place_ = 0;  ///< byte within the part; 21 bits
   bool bad_sequence_ = false;
   bool bad_shape_ = false;
   bool bad_checksum_ = false;
@@ -72,7 +74,7 @@ class FrameParser {
   Sums sums_;
   bool window_fits_ = false;
   bool last_line_ = false;
-  std::uint16_t new_first_slot_ = 0;
+  std::uint32_t new_first_slot_ = 0;
   Crc32c checksum_;
   std::uint32_t crc_ = 0;
   Outputs out_;

@@ -17,7 +17,7 @@ class IndexReference {
     bool line_end = false;
     std::uint64_t revolution = 0;  ///< clocks by the plan, 48 bits
     std::uint16_t window = 0;      ///< largest error that is corrected
-    std::uint8_t limit = 0;        ///< clocks a line
+    std::uint8_t limit = 0;        ///< clocks a line; stands while enabled
   };
   struct Outputs {
     bool adjust = false;
@@ -37,8 +37,11 @@ class IndexReference {
     const std::int64_t reach = in.window;
     const std::int64_t ahead = ahead_;
     const int part = part_;
+    const int part_less = part_less_;
     pin_ = in.rst ? 7U : ((pin_ << 1U) | (in.index ? 1U : 0U)) & 7U;
     part_ = std::clamp<int>(pending_, -int{in.limit}, in.limit);
+    part_less_ = (pending_ > in.limit ? limit_ : part_) - 1;
+    limit_ = in.limit;
     out_.adjust = false;
     if (in.rst || !in.enable) {
       out_.referenced = missing_ = take_ = turn_ = turned_ = wanted_ = settled_ = false;
@@ -47,7 +50,7 @@ class IndexReference {
         out_.error = out_.amount = 0;
       }
     } else {
-      ahead_ = signed_of(static_cast<std::uint64_t>(ahead) + change(turn_, serve, part), 48);
+      ahead_ = signed_of(static_cast<std::uint64_t>(ahead) + change(turn_, serve, part_less), 48);
       out_.referenced = referenced || turn_;
       settled_ = !turn_ && !serve;
       if (take_) {
@@ -62,13 +65,14 @@ class IndexReference {
       }
       wanted_ = in.line_end ? referenced : wanted_ && !serve;
       const bool missing = missing_;
-      missing_ = referenced && ahead < -reach && free && !missing;
+      missing_ = referenced && late_ && free && !missing;
       take_ = referenced && edge && near_ && free && !missing;
       turned_ = turn_;
       turn_ = referenced ? free && (missing || (edge && near_)) : edge && free;
     }
     near_ = ahead <= reach && ahead >= -reach;
     early_ = ahead > reach;
+    late_ = ahead < -reach;
     revolution_less_ = in.revolution - 1;
     out_.lost = !in.rst && !in.clear && (out_.lost || lost);
     return out_;
@@ -80,24 +84,27 @@ class IndexReference {
   static std::int64_t signed_of(std::uint64_t value, unsigned bits) noexcept {
     return static_cast<std::int64_t>(value << (64U - bits)) >> (64U - bits);
   }
-  std::uint64_t change(bool turn, bool serve, int part) const noexcept {
+  std::uint64_t change(bool turn, bool serve, int part_less) const noexcept {
     if (turn) {
       return revolution_less_;
     }
-    return static_cast<std::uint64_t>(std::int64_t{serve ? part : 0} - (out_.referenced ? 1 : 0));
+    return static_cast<std::uint64_t>(std::int64_t{serve ? part_less : out_.referenced ? -1 : 0});
   }
 
   unsigned pin_ = 7;
   std::int64_t ahead_ = 0;  ///< clocks of the plan until the next index; 48 bits
   std::uint64_t revolution_less_ = 0;
-  bool near_ = false;
+  bool near_ = false;  ///< where `ahead` was a clock ago
   bool early_ = false;
+  bool late_ = false;
   bool missing_ = false;
   bool take_ = false;
   bool turn_ = false;  ///< decided one clock before it is taken
   bool turned_ = false;
   int pending_ = 0;  ///< 18 bits
   int part_ = 0;
+  int part_less_ = 0;  ///< that less the clock it is taken in
+  int limit_ = 0;      ///< of the clock before
   bool wanted_ = false;
   bool settled_ = false;
   Outputs out_;

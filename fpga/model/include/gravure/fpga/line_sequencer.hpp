@@ -4,7 +4,7 @@
 
 namespace gravure::fpga {
 
-/// Bit-exact model of fpga/rtl/line_sequencer.v (W = 16): exactly slots_per_line decisions a line. A line begins on a
+/// Bit-exact model of fpga/rtl/line_sequencer.v (W = 24): exactly slots_per_line decisions a line. A line begins on a
 /// slot that finds none running and `start` high, and takes its settings there.
 class LineSequencer {
  public:
@@ -14,9 +14,9 @@ class LineSequencer {
     bool rst = false;
     bool slot = false;
     bool start = false;
-    std::uint16_t slots_per_line = 0;  ///< 0 starts nothing
-    std::uint16_t first_slot = 0;
-    std::uint16_t window_slots = 0;
+    std::uint32_t slots_per_line = 0;  ///< 24 bits each; 0 starts nothing
+    std::uint32_t first_slot = 0;
+    std::uint32_t window_slots = 0;
   };
   struct Outputs {
     bool slot_out = false;
@@ -52,7 +52,7 @@ class LineSequencer {
 
  private:
   bool running_ = false;
-  int index_ = 0;
+  std::uint32_t index_ = 0;
   Inputs line_;
 };
 

@@ -23,7 +23,7 @@ struct Register {
 inline constexpr Register kMagicRegister{
     "magic", 0x47524156, 32, 0x00, RegisterAccess::read_only};
 inline constexpr Register kVersionRegister{
-    "version", 0x2, 32, 0x01, RegisterAccess::read_only};
+    "version", 0x3, 32, 0x01, RegisterAccess::read_only};
 inline constexpr Register kCounterBitsRegister{
     "counter_bits", 0x20, 8, 0x02, RegisterAccess::read_only};
 inline constexpr Register kFifoBitsRegister{
@@ -61,11 +61,11 @@ inline constexpr Register kFractionDen1Register{
 inline constexpr Register kSeedsPerSlotRegister{
     "seeds_per_slot", 0x1, 16, 0x30, RegisterAccess::read_write};
 inline constexpr Register kSlotsPerLineRegister{
-    "slots_per_line", 0x0, 16, 0x31, RegisterAccess::read_write};
+    "slots_per_line", 0x0, 24, 0x31, RegisterAccess::read_write};
 inline constexpr Register kWindowSlotsRegister{
-    "window_slots", 0x0, 16, 0x32, RegisterAccess::read_write};
+    "window_slots", 0x0, 24, 0x32, RegisterAccess::read_write};
 inline constexpr Register kSlotsPerMicrovectorRegister{
-    "slots_per_microvector", 0x1, 16, 0x33, RegisterAccess::read_write};
+    "slots_per_microvector", 0x1, 24, 0x33, RegisterAccess::read_write};
 inline constexpr Register kLinesPerRevolutionRegister{
     "lines_per_revolution", 0x1, 32, 0x34, RegisterAccess::read_write};
 inline constexpr Register kPositionRevolutionRegister{
@@ -92,6 +92,20 @@ inline constexpr Register kScheduleSeedsRegister{
     "schedule_seeds", 0x1, 32, 0x41, RegisterAccess::read_write};
 inline constexpr Register kDescriptorRegister{
     "descriptor", 0x0, 32, 0x80, RegisterAccess::read_only};
+
+/// What a register of a board may say, where boards differ.
+struct RegisterRange {
+  std::int64_t low;
+  std::int64_t high;
+};
+inline constexpr RegisterRange kCounterBitsRange{8, 64};
+inline constexpr RegisterRange kFifoBitsRange{4, 16};
+inline constexpr RegisterRange kClockMultiplierRange{1, 16};
+
+/// The largest value that fits.
+constexpr std::uint64_t largest(const Register& one) noexcept {
+  return (std::uint64_t{1} << static_cast<unsigned>(one.bits)) - 1;
+}
 
 inline constexpr Register kRegisters[] = {
     kMagicRegister,
@@ -157,18 +171,57 @@ constexpr std::uint32_t unused_bits(unsigned address) noexcept {
     case kCommandRegister.address:
       return 0xfffffc00;
     case kSeedsPerSlotRegister.address:
-    case kSlotsPerLineRegister.address:
-    case kWindowSlotsRegister.address:
-    case kSlotsPerMicrovectorRegister.address:
     case kReverseDelayRegister.address:
     case kLowLevelRegister.address:
     case kIndexWindowRegister.address:
     case kRevolutionSeedsRegister.address + 1:
       return 0xffff0000;
+    case kSlotsPerLineRegister.address:
+    case kWindowSlotsRegister.address:
+    case kSlotsPerMicrovectorRegister.address:
+      return 0xff000000;
     default:
       return 0;
   }
 }
+
+/// A word that is read back as it was written, and what it is before that.
+struct StoredWord {
+  std::uint8_t address;
+  std::uint32_t reset;
+};
+inline constexpr std::array<StoredWord, 30> kStoredWords{{
+    {0x10, 0x0},
+    {0x20, 0x0},
+    {0x22, 0x1},
+    {0x24, 0x0},
+    {0x25, 0x0},
+    {0x26, 0x1},
+    {0x27, 0x0},
+    {0x28, 0x0},
+    {0x2a, 0x1},
+    {0x2c, 0x0},
+    {0x2d, 0x0},
+    {0x2e, 0x1},
+    {0x2f, 0x0},
+    {0x30, 0x1},
+    {0x31, 0x0},
+    {0x32, 0x0},
+    {0x33, 0x1},
+    {0x34, 0x1},
+    {0x36, 0x0},
+    {0x37, 0x0},
+    {0x38, 0x7d1f40},
+    {0x39, 0x0},
+    {0x3a, 0x0},
+    {0x3b, 0x0},
+    {0x3c, 0x0},
+    {0x3d, 0x0},
+    {0x3e, 0x0},
+    {0x3f, 0x0},
+    {0x40, 0x0},
+    {0x41, 0x1},
+}};
 
 /// The descriptor ROM from address 0x80 on: kind << 24 | version << 16 | size.
 inline constexpr std::array<std::uint32_t, 12> kDescriptors{
@@ -179,10 +232,10 @@ inline constexpr std::array<std::uint32_t, 12> kDescriptors{
     0x03020100,  // increment schedule, axis 1: 256 segments
     0x0402000c,  // line FIFO: 12 2^size bytes
     0x05020010,  // line queue: 16 lines
-    0x06020010,  // slots and lines: 16 bits of k and np
+    0x06030018,  // slots and lines: 24 bits of np; k has 16
     0x07010010,  // direction delay: 16 bits
     0x08010030,  // index reference: 48 bits of a revolution
-    0x09010010,  // scanner clock: 16 bits
+    0x09020018,  // scanner clock: 24 bits
     0x0a010020,  // watchdog: 32 bits
 };
 

@@ -1,12 +1,14 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
-#include "gravure/fpga/settings.hpp"
+#include "gravure/fpga/register_map.hpp"
 
 namespace gravure::fpga {
 
-/// Bit-exact model of fpga/rtl/register_read.v: what the host finds at an address.
+/// Bit-exact model of fpga/rtl/register_read.v: what the host finds at an address. Registers that it writes are kept
+/// here once more, as they were accepted.
 class RegisterRead {
  public:
   static constexpr int kLatency = 2;  ///< clocks from address to read_data
@@ -18,26 +20,25 @@ class RegisterRead {
     std::uint32_t level = 0;
     std::uint8_t faults = 0;
     std::uint32_t index_error = 0;  ///< 18 bits
-    const Settings::Outputs& settings;
+    bool store = false;             ///< keeps store_data, at an address of kStoredWords
+    std::uint8_t store_address = 0;
+    std::uint32_t store_data = 0;
   };
   struct Outputs {
     std::uint32_t read_data = 0;
     friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
-  explicit RegisterRead(int fifo_bits) noexcept : fifo_bits_(fifo_bits) {}
-  Outputs step(const Inputs& in) noexcept {
-    const Outputs out{.read_data = in.rst ? 0 : value_};
-    value_ = value(in);
-    return out;
-  }
+  explicit RegisterRead(int fifo_bits) noexcept : fifo_bits_(fifo_bits) { forget(); }
+  Outputs step(const Inputs& in) noexcept;
 
  private:
+  void forget() noexcept;
   std::uint32_t value(const Inputs& in) const noexcept;
-  std::uint32_t of_board(const Inputs& in) const noexcept;
 
   int fifo_bits_;
   std::uint32_t value_ = 0;
+  std::array<std::uint32_t, 256> stored_{};  ///< 0 where nothing can be stored
 };
 
 }  // namespace gravure::fpga

@@ -4,7 +4,7 @@
 
 namespace gravure::fpga {
 
-/// Bit-exact model of fpga/rtl/scanner_clock.v (W = 16): a strobe every slots_per_microvector-th slot of a line, in
+/// Bit-exact model of fpga/rtl/scanner_clock.v (W = 24): a strobe every slots_per_microvector-th slot of a line, in
 /// phase with its first slot.
 class ScannerClock {
  public:
@@ -14,7 +14,7 @@ class ScannerClock {
     bool rst = false;
     bool decision = false;
     bool first = false;
-    std::uint16_t slots_per_microvector = 0;  ///< 0 acts as 1
+    std::uint32_t slots_per_microvector = 0;  ///< 24 bits; 0 acts as 1
   };
   struct Outputs {
     bool scan = false;
@@ -22,19 +22,22 @@ class ScannerClock {
   };
 
   Outputs step(const Inputs& in) noexcept {
+    const std::uint32_t reload = reload_;
+    reload_ = in.slots_per_microvector == 0 ? 0 : in.slots_per_microvector - 1;
     if (in.rst) {
-      phase_ = 0;
+      left_ = 0;
       return {};
     }
-    const std::uint32_t now = in.first ? 0 : phase_;
+    const bool strobe = in.first || left_ == 0;
     if (in.decision) {
-      phase_ = now + 1 >= in.slots_per_microvector ? 0 : now + 1;
+      left_ = strobe ? reload : left_ - 1;
     }
-    return {.scan = in.decision && now == 0};
+    return {.scan = in.decision && strobe};
   }
 
  private:
-  std::uint32_t phase_ = 0;
+  std::uint32_t left_ = 0;    ///< decisions until the next strobe
+  std::uint32_t reload_ = 0;  ///< the setting, less one
 };
 
 }  // namespace gravure::fpga

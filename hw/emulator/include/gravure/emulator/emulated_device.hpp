@@ -9,14 +9,17 @@
 #include "gravure/core/error.hpp"
 #include "gravure/fpga/ab_registers.hpp"
 #include "gravure/fpga/pulse_gate.hpp"
+#include "gravure/fpga/register_map.hpp"
 
 namespace gravure::emulator {
 
-/// Limits of the emulated board beyond those of fpga::AbRegisters and fpga::GateRegisters.
-inline constexpr int kMinCounterBits = 8;
-inline constexpr std::int64_t kMaxWindowSlots = fpga::kMaxWindowSlots;
+/// Two lines must fit into the largest line FIFO of a board: one that runs and one that is on its way.
+inline constexpr std::int64_t kMaxWindowSlots =
+    (std::int64_t{8} << static_cast<unsigned>(fpga::kFifoBitsRange.high)) / 2;
 
-/// A board without the board: the bit-exact FPGA model behind DeviceLink. It refuses what a board would refuse; its
+/// A board without the board: the bit-exact FPGA model behind DeviceLink. It refuses what a board would refuse, by the
+/// register map (docs/registers.md): every width and range is taken from there. Where boards may differ (counter_bits,
+/// clock_multiplier, fifo_bits) it is the board that the setup asks for, within the range of that register; its
 /// second A-B channel (the carriage) has a fraction, too, which the Verilog as it is built for the HX8K leaves out.
 ///
 /// The machine never waits: every send() takes exactly one line time, in which either the frame's line runs or, where
