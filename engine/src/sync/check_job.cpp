@@ -88,13 +88,13 @@ void check_axis(const RotarySettings& rotary, Violations& violations) {
   violations.check_range("rotary.encoder_lines", rotary.encoder_lines, 1, kMostCount);
   violations.check_range("rotary.interpolation_bits", rotary.interpolation_bits, 0, kMostInterpolationBits);
   violations.check_range("rotary.max_ab_hz", rotary.max_ab_hz, 1, kMostHz);
-  const auto gear_side = [](std::int64_t turns) { return turns >= 1 && turns <= kMostMultiplier; };
+  const auto gear_side = [](std::int64_t turns) { return turns >= 1 && turns <= kMostGearTurns; };
   if (!gear_side(rotary.gear_encoder_turns) || !gear_side(rotary.gear_workpiece_turns)) {
     std::string value = std::to_string(rotary.gear_encoder_turns);
     value.insert(value.begin(), '[');
     value += ", " + std::to_string(rotary.gear_workpiece_turns) + "]";
     violations.refuse(ErrorCode::out_of_range, "rotary.gear", value,
-                      "both must be 1 to " + std::to_string(kMostMultiplier) + ", encoder turns : workpiece turns");
+                      "both must be 1 to " + std::to_string(kMostGearTurns) + ", encoder turns : workpiece turns");
   }
 }
 

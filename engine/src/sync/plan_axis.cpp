@@ -35,7 +35,7 @@ std::string what_would_fit(const Job& job, const Plan& plan, const AxisRequest& 
   }
   if (axis.section != "rotary") {
     ways.push_back("a " + axis.section + ".encoder_pitch_um of at least " + number_text(axis.scale * excess));
-  } else if (const Rational gear = axis.scale / excess; gear * Rational(kMostCount) >= Rational(1)) {
+  } else if (const Rational gear = axis.scale / excess; gear * Rational(kMostGearTurns) >= Rational(1)) {
     ways.push_back("a rotary.gear ratio of at most " + number_text(gear));
   }
   const Integer least_slots =
@@ -44,7 +44,7 @@ std::string what_would_fit(const Job& job, const Plan& plan, const AxisRequest& 
     ways.push_back("lines of at least " + to_string(least_slots) +
                    " slots (scanner.turn_slots >= " + to_string(Integer(least_slots - plan.line.pixels)) + ")");
   }
-  if (const Integer divider = ceil_of(excess * Rational(job.laser.pulse_divider)); divider <= kMostCount) {
+  if (const Integer divider = ceil_of(excess * Rational(job.laser.pulse_divider)); divider <= kMostPulseDivider) {
     ways.push_back("laser.pulse_divider >= " + to_string(divider));
   }
   if (ways.empty()) {

@@ -34,8 +34,9 @@ void check_error(const gravure::Error& error) {
 void check_job(const gravure::Job& job, std::string_view text) {
   require(job.text == text && job.path == kPath);
   require(job.laser.seed_hz > 0 && job.laser.pulse_divider > 0 && job.fpga.counter_bits >= 8);
-  require(job.rotary.diameter_mm.has_value() != job.rotary.circumference_mm.has_value());
-  require(job.rotary.line_pitch_um.has_value() != job.rotary.lines_per_revolution.has_value());
+  const bool turns = job.mode != gravure::Mode::flat;
+  require((job.rotary.diameter_mm.has_value() != job.rotary.circumference_mm.has_value()) == turns);
+  require((job.rotary.line_pitch_um.has_value() != job.rotary.lines_per_revolution.has_value()) == turns);
   require(!job.image.files.empty() || job.image.depth_map || job.image.pixels_per_line);
   require(job.limits.seam_um > 0);
 }

@@ -361,7 +361,7 @@ const Damage kDamages[] = {
     {"ClaimedDrift", [](ordered_json& j) { j["ab"]["drift_lines_per_revolution"]["num"] = 0; },
      "ab.drift_lines_per_revolution = 0: the rest of the plan gives"},
     {"ClaimedNever", [](ordered_json& j) { j["ab"]["lines_until_limit"] = nullptr; },
-     "ab.lines_until_limit must be null"},
+     "ab.lines_until_limit is null, but the limit is reached"},
     {"ClaimedLines", [](ordered_json& j) { j["ab"]["lines_until_limit"] = 1; }, "ab.lines_until_limit = 1: the rest"},
     {"ClaimedBound", [](ordered_json& j) { j["ab"]["bound_lines_until_limit"] = 1; }, "ab.bound_lines_until_limit = 1"},
 };

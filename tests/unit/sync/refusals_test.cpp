@@ -107,16 +107,14 @@ const Refusal kRefusals[] = {
      kRange,
      "above what the counter can emit, a quarter of the FPGA clock = 41000000 Hz (increment <= 2^(n-2)); "
      "rotary.interpolation_bits <= 17"},
-    {"FrequencyThatNoPulseDividerInItsRangeBringsDown",
+    {"FrequencyThatNoKeyAloneBringsDown",
      [](Job& j) {
-       j.laser.pulse_divider = 999'999'999;
+       j.laser.pulse_divider = 1'000'000;
        j.rotary.interpolation_bits = 18;
        j.rotary.encoder_lines = 1'000'000'000;
        j.rotary.max_ab_hz = 1;
-       j.rotary.gear_workpiece_turns = 1'000'000;
-       j.scanner.turn_slots = 9'999'500;
      },
-     kRange, "above rotary.max_ab_hz = 1; rotary.interpolation_bits <= "},
+     kRange, "above rotary.max_ab_hz = 1; no single key within its range would fit"},
     {"PrescalerTooSmallForTheCap",
      [](Job& j) {
        j.fpga.counter_bits = 8;
@@ -145,7 +143,7 @@ const Refusal kRefusals[] = {
      "9223 slots",
      1'000'000},
     {"SlotsOfALine", [](Job&) {}, kRange,
-     "image.pixels_per_line = 20000000: a line takes 20000420 slots with turn_slots and max_extra_slots; the board "
+     "image.pixels_per_line = 20000000: a line takes 20000409 slots with turn_slots and max_extra_slots; the board "
      "counts "
      "16777215 at most: cut the picture into bands",
      20'000'000},
