@@ -6,9 +6,12 @@
 #include <sstream>
 
 #include "gravure/formats/job_file.hpp"
+#include "markdown_table.hpp"
 
 namespace gravure {
 namespace {
+
+using test::cells_of;
 
 std::string document() {
   std::ifstream file(GRAVURE_JOB_DOC, std::ios::binary);
@@ -16,26 +19,6 @@ std::string document() {
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
-/// The cells of "| a | b |", without back-quotes.
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::string cell;
-  for (const char c : line.substr(1)) {
-    if (c == '|') {
-      cells.push_back(trimmed(cell));
-      cell.clear();
-    } else if (c != '`') {
-      cell += c;
-    }
-  }
-  return cells;
 }
 
 /// The rows of the tables whose first column is a section in brackets.

@@ -8,6 +8,7 @@
 
 #include "gravure/core/file_output.hpp"
 #include "gravure/kinematics/machines.hpp"
+#include "markdown_table.hpp"
 #include "sample_machine.hpp"
 
 namespace gravure {
@@ -96,25 +97,7 @@ TEST(MachineFile, IsReadFromDiskWithItsPathInErrors) {
   EXPECT_EQ(read_machine(path).error().code, ErrorCode::bad_file);
 }
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
-/// The cells of "| a | b |", without back-quotes.
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::string cell;
-  for (const char c : line.substr(1)) {
-    if (c == '|') {
-      cells.push_back(trimmed(cell));
-      cell.clear();
-    } else if (c != '`') {
-      cell += c;
-    }
-  }
-  return cells;
-}
+using test::cells_of;
 
 TEST(MachineDocument, HasTheReadersKeysAndNoOthers) {
   const std::vector<MachineKey> known = machine_keys();
