@@ -103,6 +103,15 @@ void check_layer_count(const Section& image, const Job& job, Violations& violati
   }
 }
 
+void check_servo(const Document& document, const Job& job, Violations& violations) {
+  const Section* servo = document.find("twin.servo");
+  if (servo != nullptr && servo->is_table && job.twin.servo.enabled && servo->find("bandwidth_hz") == nullptr) {
+    violations.add(servo->at,
+                   "[twin.servo] bandwidth_hz is missing: give the natural frequency of the axis in Hz, or "
+                   "take out enabled = true");
+  }
+}
+
 }  // namespace
 
 void check_rules(const Document& document, const Job& job, std::optional<Mode> mode, Violations& violations) {
@@ -111,6 +120,7 @@ void check_rules(const Document& document, const Job& job, std::optional<Mode> m
     exactly_one(*rotary, "diameter_mm", "circumference_mm", violations);
     exactly_one(*rotary, "line_pitch_um", "lines_per_revolution", violations);
   }
+  check_servo(document, job, violations);
   const Section* image = document.find("image");
   if (image != nullptr && image->is_table) {
     check_image_kind(*image, violations);

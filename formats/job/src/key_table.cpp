@@ -8,8 +8,28 @@ namespace {
 
 using Store = void (*)(Job&, const Value&);
 
-constexpr std::array<std::string_view, 9> kSections = {"job",      "laser", "fpga",  "scanner", "rotary",
-                                                       "carriage", "stage", "image", "limits"};
+constexpr std::array kSections = std::to_array<std::string_view>({"job",
+                                                                  "machine",
+                                                                  "laser",
+                                                                  "fpga",
+                                                                  "scanner",
+                                                                  "rotary",
+                                                                  "carriage",
+                                                                  "stage",
+                                                                  "image",
+                                                                  "repeat",
+                                                                  "limits",
+                                                                  "twin.drift",
+                                                                  "twin.ab_step",
+                                                                  "twin.galvo_resolution",
+                                                                  "twin.microvectors",
+                                                                  "twin.cross_scan",
+                                                                  "twin.lag",
+                                                                  "twin.defocus",
+                                                                  "twin.servo",
+                                                                  "twin.run_out",
+                                                                  "twin.thermal"});
+constexpr std::array<std::string_view, 1> kParents = {"twin"};
 constexpr std::array<std::string_view, 3> kModes = {"rotary", "helical", "flat"};  // as Mode counts them
 constexpr std::array<std::string_view, 2> kLaterModes = {"freeform", "zones"};
 constexpr std::array<std::string_view, 2> kFires = {"white", "black"};
@@ -30,6 +50,10 @@ constexpr KeySpec integer(std::string_view section, std::string_view key, std::s
 constexpr KeySpec decimal(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
                           std::string_view high, std::string_view fallback, Store store) {
   return {section, key, Type::decimal, unit, low, high, {}, presence_of(fallback), fallback, store};
+}
+
+constexpr KeySpec on_off(std::string_view section, std::string_view fallback, Store store) {
+  return {section, "enabled", Type::boolean, "", "", "", {}, Presence::optional, fallback, store};
 }
 
 constexpr KeySpec word(std::string_view section, std::string_view key, std::span<const std::string_view> words,
@@ -57,12 +81,19 @@ constexpr std::string_view kOneOfSizes = "one of diameter_mm, circumference_mm";
 constexpr std::string_view kOneOfPitches = "one of line_pitch_um, lines_per_revolution";
 constexpr std::string_view kOneOfImages = "one of files, depth_map";
 constexpr std::string_view kBiggestHz = "10_000_000_000";
+constexpr std::string_view kUnchecked = "not checked";
+constexpr std::string_view kMostJerk = "1_000_000_000_000_000_000";  // as the machine file has it
+constexpr std::string_view kMostAcceleration = "1_000_000_000_000";
+constexpr std::string_view kMostSpeed = "1_000_000_000";
+constexpr std::string_view kLeastMotion = "0.000_001";
 
 // Bounds keep every figure physical and every tick count far inside 64 bits where they are multiplied one by one;
 // make_plan() checks the products.
 constexpr std::array kTable = {
     other("job", "title", Type::title, "\"\"", [](Job& j, const Value& v) { j.title = v.text; }),
     word("job", "mode", kModes, kRequired, [](Job& j, const Value& v) { j.mode = enum_of<Mode>(kModes, v); }),
+
+    other("machine", "file", Type::path, "none", [](Job& j, const Value& v) { j.machine.file = v.text; }),
 
     integer("laser", "seed_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.laser.seed_hz = v.integer; }),
@@ -93,6 +124,26 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.scanner.bidirectional_offset_ticks = v.integer; }),
     decimal("scanner", "field_mm", "mm", "0.001", "10_000", "none: the image fits",
             [](Job& j, const Value& v) { j.scanner.field_mm = v.number; }),
+    integer("scanner", "resolution_bits", "bits", "8", "26", "20",
+            [](Job& j, const Value& v) { j.scanner.resolution_bits = static_cast<int>(v.integer); }),
+    decimal("scanner", "lag_us", "us", "0", "1_000_000", "0",
+            [](Job& j, const Value& v) { j.scanner.lag_us = v.number; }),
+    other("scanner", "compensate_lag", Type::boolean, "true",
+          [](Job& j, const Value& v) { j.scanner.compensate_lag = v.boolean; }),
+    decimal("scanner", "max_speed_mm_s", "mm/s", kLeastMotion, kMostSpeed, kUnchecked,
+            [](Job& j, const Value& v) { j.scanner.max_speed_mm_s = v.number; }),
+    decimal("scanner", "max_acceleration_mm_s2", "mm/s^2", kLeastMotion, kMostAcceleration, kUnchecked,
+            [](Job& j, const Value& v) { j.scanner.max_acceleration_mm_s2 = v.number; }),
+    decimal("scanner", "max_jerk_mm_s3", "mm/s^3", kLeastMotion, kMostJerk, kUnchecked,
+            [](Job& j, const Value& v) { j.scanner.max_jerk_mm_s3 = v.number; }),
+    other("scanner", "cross_scan_correction", Type::boolean, "true",
+          [](Job& j, const Value& v) { j.scanner.cross_scan_correction = v.boolean; }),
+    decimal("scanner", "offset_deg", "deg", "-85", "85", "0",
+            [](Job& j, const Value& v) { j.scanner.offset_deg = v.number; }),
+    decimal("scanner", "tilt_deg_per_mm", "deg/mm", "0", "10", "0: telecentric",
+            [](Job& j, const Value& v) { j.scanner.tilt_deg_per_mm = v.number; }),
+    other("scanner", "field_grid", Type::path, "none: no distortion",
+          [](Job& j, const Value& v) { j.scanner.field_grid = v.text; }),
 
     decided(decimal("rotary", "diameter_mm", "mm", "0.01", "10_000", kOneOfSizes,
                     [](Job& j, const Value& v) { j.rotary.diameter_mm = v.number; })),
@@ -121,6 +172,14 @@ constexpr std::array kTable = {
             }},
     integer("rotary", "max_ab_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.rotary.max_ab_hz = v.integer; }),
+    decimal("rotary", "start_angle_deg", "deg", "-360", "360", "0",
+            [](Job& j, const Value& v) { j.rotary.start_angle_deg = v.number; }),
+    decimal("rotary", "max_speed_deg_s", "deg/s", kLeastMotion, kMostSpeed, kUnchecked,
+            [](Job& j, const Value& v) { j.rotary.limits.max_speed = v.number; }),
+    decimal("rotary", "max_acceleration_deg_s2", "deg/s^2", kLeastMotion, kMostAcceleration, kUnchecked,
+            [](Job& j, const Value& v) { j.rotary.limits.max_acceleration = v.number; }),
+    decimal("rotary", "max_jerk_deg_s3", "deg/s^3", kLeastMotion, kMostJerk, kUnchecked,
+            [](Job& j, const Value& v) { j.rotary.limits.max_jerk = v.number; }),
 
     decimal("carriage", "feed_pixels", "columns per turn", "0.001", "1_000_000", kRequired,
             [](Job& j, const Value& v) { j.carriage.feed_pixels = v.number; }),
@@ -132,6 +191,12 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.carriage.interpolation_bits = static_cast<int>(v.integer); }),
     integer("carriage", "max_ab_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.carriage.max_ab_hz = v.integer; }),
+    decimal("carriage", "max_speed_mm_s", "mm/s", kLeastMotion, kMostSpeed, kUnchecked,
+            [](Job& j, const Value& v) { j.carriage.limits.max_speed = v.number; }),
+    decimal("carriage", "max_acceleration_mm_s2", "mm/s^2", kLeastMotion, kMostAcceleration, kUnchecked,
+            [](Job& j, const Value& v) { j.carriage.limits.max_acceleration = v.number; }),
+    decimal("carriage", "max_jerk_mm_s3", "mm/s^3", kLeastMotion, kMostJerk, kUnchecked,
+            [](Job& j, const Value& v) { j.carriage.limits.max_jerk = v.number; }),
 
     integer("stage", "lines", "lines", "1", "1_000_000_000", kRequired,
             [](Job& j, const Value& v) { j.stage.lines = v.integer; }),
@@ -143,6 +208,12 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.stage.interpolation_bits = static_cast<int>(v.integer); }),
     integer("stage", "max_ab_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.stage.max_ab_hz = v.integer; }),
+    decimal("stage", "max_speed_mm_s", "mm/s", kLeastMotion, kMostSpeed, kUnchecked,
+            [](Job& j, const Value& v) { j.stage.limits.max_speed = v.number; }),
+    decimal("stage", "max_acceleration_mm_s2", "mm/s^2", kLeastMotion, kMostAcceleration, kUnchecked,
+            [](Job& j, const Value& v) { j.stage.limits.max_acceleration = v.number; }),
+    decimal("stage", "max_jerk_mm_s3", "mm/s^3", kLeastMotion, kMostJerk, kUnchecked,
+            [](Job& j, const Value& v) { j.stage.limits.max_jerk = v.number; }),
 
     decided(other("image", "files", Type::paths, kOneOfImages,
                   [](Job& j, const Value& v) {
@@ -171,8 +242,44 @@ constexpr std::array kTable = {
     decided(integer("image", "pixels_per_line", "pixels", "1", "1_000_000_000", "from the images",
                     [](Job& j, const Value& v) { j.image.pixels_per_line = v.integer; })),
 
+    integer("repeat", "around", "tiles", "1", "1_000_000", "1",
+            [](Job& j, const Value& v) { j.repeat.around = v.integer; }),
+    integer("repeat", "along", "tiles", "1", "1_000_000", "1",
+            [](Job& j, const Value& v) { j.repeat.along = v.integer; }),
+    other("repeat", "mirror_around", Type::boolean, "false",
+          [](Job& j, const Value& v) { j.repeat.mirror_around = v.boolean; }),
+    other("repeat", "mirror_along", Type::boolean, "false",
+          [](Job& j, const Value& v) { j.repeat.mirror_along = v.boolean; }),
+
     decimal("limits", "seam_um", "um", "0.000_001", "1_000_000", kRequired,
             [](Job& j, const Value& v) { j.limits.seam_um = v.number; }),
+    decimal("limits", "landing_um", "um", "0.000_001", "1_000_000", "not judged",
+            [](Job& j, const Value& v) { j.limits.landing_um = v.number; }),
+    decimal("limits", "defocus_um", "um", "0.000_001", "1_000_000", "not judged",
+            [](Job& j, const Value& v) { j.limits.defocus_um = v.number; }),
+
+    on_off("twin.drift", "true", [](Job& j, const Value& v) { j.twin.drift = v.boolean; }),
+    on_off("twin.ab_step", "true", [](Job& j, const Value& v) { j.twin.ab_step = v.boolean; }),
+    on_off("twin.galvo_resolution", "true", [](Job& j, const Value& v) { j.twin.galvo_resolution = v.boolean; }),
+    on_off("twin.microvectors", "true", [](Job& j, const Value& v) { j.twin.microvectors = v.boolean; }),
+    on_off("twin.cross_scan", "true", [](Job& j, const Value& v) { j.twin.cross_scan = v.boolean; }),
+    on_off("twin.lag", "true", [](Job& j, const Value& v) { j.twin.lag = v.boolean; }),
+    on_off("twin.defocus", "true", [](Job& j, const Value& v) { j.twin.defocus = v.boolean; }),
+    on_off("twin.servo", "false", [](Job& j, const Value& v) { j.twin.servo.enabled = v.boolean; }),
+    decided(decimal("twin.servo", "bandwidth_hz", "Hz", "0.001", "1_000_000", "required with enabled = true",
+                    [](Job& j, const Value& v) { j.twin.servo.bandwidth_hz = v.number; })),
+    decimal("twin.servo", "damping", "", "0.01", "10", "0.7",
+            [](Job& j, const Value& v) { j.twin.servo.damping = v.number; }),
+    on_off("twin.run_out", "false", [](Job& j, const Value& v) { j.twin.run_out.enabled = v.boolean; }),
+    decimal("twin.run_out", "eccentricity_um", "um", "0", "10_000", "0",
+            [](Job& j, const Value& v) { j.twin.run_out.eccentricity_um = v.number; }),
+    decimal("twin.run_out", "angle_deg", "deg", "-360", "360", "0",
+            [](Job& j, const Value& v) { j.twin.run_out.angle_deg = v.number; }),
+    on_off("twin.thermal", "false", [](Job& j, const Value& v) { j.twin.thermal.enabled = v.boolean; }),
+    decimal("twin.thermal", "temperature_change_k", "K", "-1_000", "1_000", "0",
+            [](Job& j, const Value& v) { j.twin.thermal.temperature_change_k = v.number; }),
+    decimal("twin.thermal", "expansion_um_per_m_k", "um/(m K)", "0", "1_000", "0",
+            [](Job& j, const Value& v) { j.twin.thermal.expansion_um_per_m_k = v.number; }),
 };
 
 std::string either(std::span<const std::string_view> words) {
@@ -196,6 +303,14 @@ std::span<const KeySpec> key_table() {
 
 std::span<const std::string_view> section_names() {
   return kSections;
+}
+
+std::span<const std::string_view> parent_names() {
+  return kParents;
+}
+
+bool section_is_optional(std::string_view section) {
+  return section == "machine" || section == "repeat" || section.substr(0, 5) == "twin.";
 }
 
 std::span<const std::string_view> later_modes() {

@@ -43,6 +43,12 @@ std::span<const KeySpec> key_table();
 /// The sections in the order of the documentation.
 std::span<const std::string_view> section_names();
 
+/// Names whose tables are sections of their own: "twin" of "twin.servo".
+std::span<const std::string_view> parent_names();
+
+/// May every job leave the section out?
+bool section_is_optional(std::string_view section);
+
 /// The key's row, or null.
 const KeySpec* find_key(std::string_view section, std::string_view key);
 

@@ -258,6 +258,9 @@ class Reader {
 
   /// Sections of single modes are needed in those; without a known mode [rotary] or [stage] is.
   bool is_needed(std::string_view section) const {
+    if (section_is_optional(section)) {
+      return false;
+    }
     if (mode_) {
       return section_is_of(section, *mode_);
     }
@@ -319,7 +322,7 @@ Result<Job> parse_job(std::string_view text, const std::string& path) {
     return Error{ErrorCode::bad_file, path + ": " + std::to_string(text.size()) + " bytes: a job file has at most " +
                                           std::to_string(kMaxJobBytes)};
   }
-  const auto parsed = job_file::parse_toml(text);
+  const auto parsed = job_file::parse_toml(text, job_file::parent_names());
   if (const auto* syntax = std::get_if<job_file::SyntaxError>(&parsed)) {
     return Error{ErrorCode::bad_argument, job_file::place(path, syntax->at) + "not TOML: " + syntax->message};
   }

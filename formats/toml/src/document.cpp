@@ -175,9 +175,9 @@ void sort_by_place(std::vector<T>& list) {
   std::stable_sort(list.begin(), list.end(), [](const T& a, const T& b) { return a.at < b.at; });
 }
 
-Section section_of(const toml::key& key, const toml::node& node, const SourceText& source) {
+Section section_of(const std::string& name, const toml::key& key, const toml::node& node, const SourceText& source) {
   Section section;
-  section.name = std::string(key.str());
+  section.name = name;
   section.at = location_of(node.is_table() ? node.source() : key.source());
   section.is_table = node.is_table();
   if (const auto* table = node.as_table()) {
@@ -227,7 +227,7 @@ const Section* Document::find(std::string_view name) const {
   return found == sections.end() ? nullptr : &*found;
 }
 
-std::variant<Document, SyntaxError> parse_toml(std::string_view text) {
+std::variant<Document, SyntaxError> parse_toml(std::string_view text, std::span<const std::string_view> parents) {
   if (const Location deep = find_deep_key(text, kMaxKeyParts); deep.line != 0) {
     return SyntaxError{deep, "a key of more than " + std::to_string(kMaxKeyParts) + " dotted parts"};
   }
@@ -244,7 +244,15 @@ std::variant<Document, SyntaxError> parse_toml(std::string_view text) {
   Document document;
   document.end = source.end();
   for (auto&& [key, node] : parsed.table()) {
-    document.sections.push_back(section_of(key, node, source));
+    const std::string name(key.str());
+    const auto* table = node.as_table();
+    if (table == nullptr || std::find(parents.begin(), parents.end(), name) == parents.end()) {
+      document.sections.push_back(section_of(name, key, node, source));
+      continue;
+    }
+    for (auto&& [child_key, child] : *table) {
+      document.sections.push_back(section_of(name + "." + std::string(child_key.str()), child_key, child, source));
+    }
   }
   sort_by_place(document.sections);
   return document;

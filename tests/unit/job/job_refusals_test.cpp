@@ -165,6 +165,10 @@ const Refusal kContradictions[] = {
     {"DepthMaxEqualToTheDefaultMin", "files        = [\"layers/*.tif\"]",
      "depth_map = \"d.exr\"\nlevels = 100\ndepth_max = 0.0", kBad, "depth_max",
      "[image] depth_max = 0.0: must differ from depth_min, which is 0 where not given"},
+    {"ServoWithoutBandwidth", "[image]", "[twin.servo]\nenabled = true\n\n[image]", kBad, "[twin.servo]",
+     "[twin.servo] bandwidth_hz is missing: give the natural frequency of the axis in Hz, or take out enabled = true"},
+    {"TermOfNoBudget", "[image]", "[twin.srvo]\nenabled = true\n\n[image]", kBad, "[twin.srvo]",
+     "[twin.srvo]: unknown section; did you mean [twin.servo]?"},
     {"LevelsThatAreNotRevolutions", "files        = [\"layers/*.tif\"]", "depth_map = \"d.png\"\nlevels = 99", kBad,
      "revolutions ",
      "[image] revolutions = 100: contradicts levels = 99 (line 34); order = \"sequence\" needs one layer per "

@@ -40,6 +40,28 @@ struct ScannerSettings {
   bool bidirectional = true;
   std::int64_t bidirectional_offset_ticks = 0;  ///< delay of right-to-left lines in FPGA ticks
   std::optional<Rational> field_mm;             ///< longest line the scanner can mark; wider images get bands
+  int resolution_bits = 20;                     ///< set-points are integers of so many bits over the field
+  Rational lag_us = 0;                          ///< the mirrors follow their set-points so much later
+  bool compensate_lag = true;                   ///< set-points are sent early by the lag
+  std::optional<Rational> max_speed_mm_s;       ///< of each mirror; absent limits are not checked
+  std::optional<Rational> max_acceleration_mm_s2;
+  std::optional<Rational> max_jerk_mm_s3;
+  bool cross_scan_correction = true;      ///< V follows the moving surface
+  Rational offset_deg = 0;                ///< where round the circumference the lines lie, 0 at the top
+  Rational tilt_deg_per_mm = 0;           ///< f-theta lens: tilt of the beam a mm of distance from the centre
+  std::optional<std::string> field_grid;  ///< file of the scanner's distortion, relative to the job file
+};
+
+/// The machine file that describes scan head and joints where the job leaves them out.
+struct MachineSettings {
+  std::optional<std::string> file;  ///< relative to the job file
+};
+
+/// What an axis can do; absent limits are not checked. Degrees for rotary axes, mm for linear ones.
+struct AxisLimits {
+  std::optional<Rational> max_speed;
+  std::optional<Rational> max_acceleration;
+  std::optional<Rational> max_jerk;
 };
 
 struct RotarySettings {
@@ -52,6 +74,8 @@ struct RotarySettings {
   std::int64_t gear_encoder_turns = 1;  ///< encoder turns : workpiece turns
   std::int64_t gear_workpiece_turns = 1;
   std::int64_t max_ab_hz = 0;
+  Rational start_angle_deg = 0;  ///< of line 0 from the encoder index
+  AxisLimits limits;             ///< all three given: the axis is spun up and down under them
 };
 
 /// Helical mode: the axis that carries the scanner along the workpiece, by the second A-B channel.
@@ -61,6 +85,7 @@ struct CarriageSettings {
   Rational encoder_pitch_um = 0;  ///< travel of one encoder line
   int interpolation_bits = 0;     ///< q
   std::int64_t max_ab_hz = 0;
+  AxisLimits limits;
 };
 
 /// Flat mode: the stage that carries the workpiece across the lines, by the first A-B channel.
@@ -70,6 +95,7 @@ struct StageSettings {
   Rational encoder_pitch_um = 0;  ///< travel of one encoder line
   int interpolation_bits = 0;     ///< q
   std::int64_t max_ab_hz = 0;
+  AxisLimits limits;
 };
 
 enum class Fires : std::uint8_t { white, black };
@@ -90,8 +116,47 @@ struct ImageSettings {
   std::optional<std::int64_t> pixels_per_line;  ///< lets a job be planned without its images
 };
 
+/// Step and repeat: the images are tiles, laid side by side.
+struct RepeatSettings {
+  std::int64_t around = 1;     ///< tiles across the lines: round the circumference, along the stage
+  std::int64_t along = 1;      ///< tiles along a line
+  bool mirror_around = false;  ///< every other tile round the circumference is turned over, top to bottom
+  bool mirror_along = false;   ///< every other tile along a line is turned over, left to right
+};
+
 struct Limits {
   Rational seam_um = 0;
+  std::optional<Rational> landing_um;  ///< largest landing error of a pulse; absent: not judged
+  std::optional<Rational> defocus_um;
+};
+
+/// The terms of the twin's error budget. A term that is off adds nothing to the landing of a pulse.
+struct TwinSettings {
+  struct Servo {  ///< the axis follows its A-B signal as a second-order system
+    bool enabled = false;
+    Rational bandwidth_hz = 0;
+    Rational damping = ratio(7, 10);
+  };
+  struct RunOut {  ///< the workpiece turns about an axis beside its own
+    bool enabled = false;
+    Rational eccentricity_um = 0;
+    Rational angle_deg = 0;  ///< of the high spot, from line 0
+  };
+  struct Thermal {  ///< the workpiece has grown since it was measured
+    bool enabled = false;
+    Rational temperature_change_k = 0;
+    Rational expansion_um_per_m_k = 0;
+  };
+  bool drift = true;
+  bool ab_step = true;
+  bool galvo_resolution = true;
+  bool microvectors = true;
+  bool cross_scan = true;
+  bool lag = true;
+  bool defocus = true;
+  Servo servo;
+  RunOut run_out;
+  Thermal thermal;
 };
 
 /// A place in a text file; both count from 1, columns in characters.
@@ -113,7 +178,10 @@ struct Job {
   CarriageSettings carriage;  ///< helical
   StageSettings stage;        ///< flat
   ImageSettings image;
+  RepeatSettings repeat;
   Limits limits;
+  TwinSettings twin;
+  MachineSettings machine;
 
   std::string path;  ///< the job file; image patterns are relative to its folder
   std::string text;  ///< its bytes, stored in the program

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -58,8 +59,9 @@ struct SyntaxError {
   std::string message;
 };
 
-/// Parses TOML 1.0. Keys of more than kMaxKeyParts parts are refused: nesting must not exhaust the stack.
-std::variant<Document, SyntaxError> parse_toml(std::string_view text);
+/// Parses TOML 1.0. Keys of more than kMaxKeyParts parts are refused: nesting must not exhaust the stack. The tables of
+/// a root key in `parents` are sections of their own ("twin.servo"), in its stead.
+std::variant<Document, SyntaxError> parse_toml(std::string_view text, std::span<const std::string_view> parents = {});
 
 inline constexpr int kMaxKeyParts = 32;
 
