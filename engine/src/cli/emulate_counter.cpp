@@ -6,6 +6,7 @@
 #include "emulate_rtl.hpp"
 #include "gravure/formats/waves.hpp"
 #include "gravure/fpga/edge_stream.hpp"
+#include "program_files.hpp"
 #include "text_output.hpp"
 
 namespace gravure::cli {
@@ -126,9 +127,7 @@ Json axis_json(const fpga::AbRegisters& registers, std::uint64_t tick) {
 Result<int> run_counter(const EmulateOptions& options, const Command& command) {
   GRAVURE_CHECK(check_registers(options.registers));
   GRAVURE_TRY(const TickWindow window, tick_window(options, options.clocks));
-  if (!options.edges_path.empty() && options.edges_path == options.vcd_path) {
-    return Error{ErrorCode::bad_argument, "--edges and --vcd both name " + options.vcd_path + ": give two files"};
-  }
+  GRAVURE_CHECK(refuse_overwrite({{"--edges", options.edges_path}, {"--vcd", options.vcd_path}}, {}));
   const std::uint64_t closed_form = fpga::position_after(options.registers, window.last).edges -
                                     fpga::position_after(options.registers, window.first).edges;
   const auto check = [&](std::uint64_t written) {  // two ways to the same number

@@ -330,12 +330,7 @@ Result<TickWindow> window_of(EmulateOptions options, const Plan& plan) {
 }  // namespace
 
 Result<int> run_program(const EmulateOptions& options, const Command& command) {
-  for (const std::string& output : {options.edges_path, options.vcd_path}) {
-    GRAVURE_CHECK(refuse_overwrite(output, {options.program}));
-  }
-  if (!options.edges_path.empty() && options.edges_path == options.vcd_path) {
-    return Error{ErrorCode::bad_argument, "--edges and --vcd both name " + options.vcd_path + ": give two files"};
-  }
+  GRAVURE_CHECK(refuse_overwrite({{"--edges", options.edges_path}, {"--vcd", options.vcd_path}}, {options.program}));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const Plan& plan = program->header().plan;
   const std::int64_t per_revolution = plan.rotary.lines_per_revolution;

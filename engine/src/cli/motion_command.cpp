@@ -73,6 +73,7 @@ std::string milliseconds(double time_s) {
 }
 
 Result<int> run_respond(const RespondOptions& options, bool json) {
+  GRAVURE_CHECK(check_outputs(options.output, {}));
   GRAVURE_TRY(const std::vector<motion::Mode> modes, modes_of(options.modes));
   GRAVURE_TRY(const motion::Band band, band_of(options.modes));
   GRAVURE_TRY(const auto input, respond_input(options, modes));
@@ -158,6 +159,7 @@ std::string search_csv(const motion::SearchReport& report) {
 }
 
 Result<int> run_search(const SearchVerbOptions& options, bool json) {
+  GRAVURE_CHECK(check_outputs(options.output, {}));
   const MoveOptions& move = options.move;
   motion::SearchProblem problem{
       move.stroke_mm, move.v_max, move.a_up, move.a_down.value_or(move.a_up), options.jerk_max,

@@ -42,6 +42,7 @@ std::string identification_csv(const motion::Identification& found) {
 }
 
 Result<int> run_identify(const IdentifyOptions& options, bool json) {
+  GRAVURE_CHECK(check_outputs(options.output, {options.recording}));
   GRAVURE_TRY(const std::string text, read_file(options.recording, kMostBytes));
   motion::IdentifyRequest request;
   auto recording = motion::parse_recording_csv(text);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "gravure/core/file_output.hpp"
+#include "program_files.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -147,6 +148,11 @@ void add_output_options(CLI::App& verb, OutputOptions& options) {
   verb.add_option("--csv", options.csv, "Write samples to this file");
   verb.add_option("--plot", options.plot, "Write a figure (SVG) to this file");
   verb.add_option("--plot-title", options.plot_title, "Title of the figure");
+}
+
+Result<void> check_outputs(const OutputOptions& options, const std::vector<std::string>& inputs,
+                           const std::string& program_output) {
+  return refuse_overwrite({{"--output", program_output}, {"--csv", options.csv}, {"--plot", options.plot}}, inputs);
 }
 
 Result<void> write_whole(const std::string& path, std::string_view content) {

@@ -68,6 +68,9 @@ struct OutputOptions {
 std::vector<formats::Curve> profile_curves(const motion::Profile& profile);
 
 void add_output_options(CLI::App& verb, OutputOptions& options);
+/// Fails with bad_argument, before anything is computed, where two of the files to write are one, or one is an input.
+Result<void> check_outputs(const OutputOptions& options, const std::vector<std::string>& inputs,
+                           const std::string& program_output = {});
 /// Writes a file, whole or not at all, also under Ctrl-C.
 Result<void> write_whole(const std::string& path, std::string_view content);
 /// Writes what was asked for.

@@ -139,7 +139,8 @@ void add_motion_profile(CLI::App& motion, Command& command) {
         throw CLI::RequiredError(std::string(name) + " (or --axis)");
       }
     }
-    command.run = [&command, options] {
+    command.run = [&command, options]() -> Result<int> {
+      GRAVURE_CHECK(check_outputs(options->output, {}));
       return options->axes.empty() ? run_one_axis(*options, command.json) : run_axes(*options, command.json);
     };
   });

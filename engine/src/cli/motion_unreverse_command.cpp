@@ -12,7 +12,6 @@
 #include "motion_command.hpp"
 #include "motion_options.hpp"
 #include "motion_surroundings.hpp"
-#include "program_files.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -91,11 +90,7 @@ motion::ToolPose tool_at(const UnreverseOptions& options, const ToolPath& path, 
 Result<ToolPath> load_path(const UnreverseOptions& options) {
   ToolPath path;
   GRAVURE_TRY(path.text, read_file(options.program, kMostBytes));
-  auto read = motion::parse_rotary_program(path.text);
-  if (!read) {
-    return Error{read.error().code, options.program + ": " + read.error().message};
-  }
-  path.read = std::move(read).value();
+  GRAVURE_TRY(path.read, motion::parse_rotary_program(path.text, options.program));
   if (path.read.line.size() < 2) {
     return Error{ErrorCode::bad_file, options.program + ": fewer than 2 blocks turn A or C: nothing to do"};
   }
@@ -147,14 +142,10 @@ std::vector<double> program_c(const ToolPath& path, const motion::SmoothPath& sm
 Result<motion::Rewritten> rewrite(const UnreverseOptions& options, const ToolPath& path,
                                   const motion::SmoothPath& smoothed) {
   const std::vector<double> c_deg = program_c(path, smoothed);
-  auto rewritten = motion::rewrite_rotary_program(
+  return motion::rewrite_rotary_program(
       {path.text, smoothed.a.angle, c_deg,
        options.machine_frame ? motion::ProgramFrame::machine : motion::ProgramFrame::workpiece, options.ball_radius_mm,
-       path.rotary_centre_mm});
-  if (!rewritten) {
-    return Error{rewritten.error().code, options.program + ": " + rewritten.error().message};
-  }
-  return rewritten;
+       path.rotary_centre_mm, options.program});
 }
 
 std::string unreversed_text(const std::vector<formats::UnreversedAxis>& axes, const formats::ToolPathSummary& tool) {
@@ -202,6 +193,8 @@ formats::UnreversedAxis axis_of(const UnreverseOptions& options, const std::stri
 }
 
 Result<int> run_unreverse(const UnreverseOptions& options, bool json) {
+  const std::vector<std::string> inputs{options.program, options.around.surface, options.around.blade};
+  GRAVURE_CHECK(check_outputs(options.output, inputs, options.rewritten));
   GRAVURE_TRY(const ToolPath path, load_path(options));
   GRAVURE_TRY(const motion::SmoothPath smoothed, smooth(options, path));
   formats::ToolPathSummary tool;
@@ -211,7 +204,6 @@ Result<int> run_unreverse(const UnreverseOptions& options, bool json) {
     tool.largest_turn_deg = smoothed.largest_turn_deg;
   }
   if (!options.rewritten.empty()) {
-    GRAVURE_CHECK(refuse_overwrite(options.rewritten, {options.program, options.around.surface, options.around.blade}));
     GRAVURE_TRY(tool.rewritten, rewrite(options, path, smoothed));
     GRAVURE_CHECK(write_whole(options.rewritten, tool.rewritten->program));
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "gravure/emulator/emulated_device.hpp"
@@ -32,6 +33,16 @@ std::vector<fs::path> places_of(const SourceImage& source, const ProgramHeader& 
   return places;
 }
 
+/// Also where neither is there yet.
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code ignored;
+  if (fs::equivalent(a, b, ignored)) {
+    return true;
+  }
+  const fs::path place = fs::weakly_canonical(fs::absolute(a, ignored), ignored);
+  return !place.empty() && place == fs::weakly_canonical(fs::absolute(b, ignored), ignored);
+}
+
 }  // namespace
 
 DeviceFactory emulated_devices() {
@@ -54,6 +65,23 @@ Result<void> refuse_overwrite(const std::string& output, const std::vector<std::
     if (fs::equivalent(output, input, ignored)) {
       return Error{ErrorCode::bad_argument,
                    fmt::format("output {} is the input {}: give another file name", output, input)};
+    }
+  }
+  return {};
+}
+
+Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    if (output->path.empty()) {
+      continue;
+    }
+    GRAVURE_CHECK(refuse_overwrite(output->path, inputs));
+    const auto other = std::find_if(outputs.begin(), output, [&output](const OutputFile& before) {
+      return !before.path.empty() && same_file(before.path, output->path);
+    });
+    if (other != output) {
+      return Error{ErrorCode::bad_argument, fmt::format("{} {} and {} {} are one file: give two", other->option,
+                                                        other->path, output->option, output->path)};
     }
   }
   return {};

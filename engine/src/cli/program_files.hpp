@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gravure/core/layer_lines.hpp"
@@ -41,6 +42,15 @@ LayerOrigin origin_of(const ProgramHeader& header, std::int64_t layer);
 
 /// Fails with bad_argument where `output` is one of the files that are being read.
 Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs);
+
+/// A file to write, with the option that names it; an empty path asks for none.
+struct OutputFile {
+  std::string_view option;
+  std::string path;
+};
+/// Fails with bad_argument where one of `outputs` is one of `inputs`, or two of them are one file: by path, another way
+/// to the same folder, or a link.
+Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs);
 
 /// What a job counts: "revolutions", or "passes" in flat mode.
 const char* turns_name(const Plan& plan);

@@ -72,7 +72,7 @@ Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
     while (taken < columns.count && take_number(rest, values[taken])) {
       ++taken;
     }
-    if (taken == columns.count) {
+    if (taken == columns.count && is_blank_or_comment(rest)) {
       row({values.data(), taken});
       ++rows;
     } else if (!heading_allowed || taken > 0) {

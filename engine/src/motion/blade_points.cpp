@@ -117,11 +117,12 @@ Curve curve_through(std::vector<Vector3> points) {
 
 Result<BladeRails> parse_blade_csv(std::string_view text) {
   BladeRails rails;
-  GRAVURE_CHECK(read_csv_rows(text, {"blade", "x, y, z of the shroud and x, y, z of the hub in mm, six numbers", 6},
-                              [&rails](std::span<const double> row) {
-                                rails.shroud.push_back({row[0], row[1], row[2]});
-                                rails.hub.push_back({row[3], row[4], row[5]});
-                              }));
+  GRAVURE_CHECK(
+      read_csv_rows(text, {"blade", "x, y, z of the shroud and x, y, z of the hub in mm, six numbers and no more", 6},
+                    [&rails](std::span<const double> row) {
+                      rails.shroud.push_back({row[0], row[1], row[2]});
+                      rails.hub.push_back({row[3], row[4], row[5]});
+                    }));
   if (rails.shroud.size() < 2) {
     return Error{ErrorCode::bad_file, fmt::format("blade: {} rows: 2 or more are needed", rails.shroud.size())};
   }

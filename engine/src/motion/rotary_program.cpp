@@ -60,22 +60,23 @@ Moved take_line(const std::vector<Word>& words, Modal& modal) noexcept {
 
 }  // namespace
 
-Result<RotaryPath> parse_rotary_program(std::string_view text) {
+Result<RotaryPath> parse_rotary_program(std::string_view text, std::string_view name) {
   RotaryPath path;
   Modal modal;
   bool any_move = false;
   std::size_t switched_line = 0;
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
-    const std::string_view line = text.substr(0, end);
-    GRAVURE_TRY(const auto words, words_of(line, number));
-    GRAVURE_CHECK(check_plain(line, number, words, any_move));
+    const ProgramLine line{name, number, text.substr(0, end)};
+    GRAVURE_TRY(const auto words, words_of(line));
+    GRAVURE_CHECK(check_plain(line, words, any_move));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     const Moved moved = take_line(words, modal);
     if (switched_line > 0 && (moved.rotary || moved.linear)) {
-      return Error{ErrorCode::bad_file, fmt::format("rotary program: line {}: moves in another frame than the moves "
-                                                    "before line {}, which switches it; split the program there",
-                                                    number, switched_line)};
+      return error_at(line, 0,
+                      fmt::format("moves in another frame than the moves before line {}, which switches it; split the "
+                                  "program there",
+                                  switched_line));
     }
     any_move = any_move || moved.rotary || moved.linear;
     switched_line = any_move && switches_frame(words) ? number : switched_line;
@@ -88,7 +89,7 @@ Result<RotaryPath> parse_rotary_program(std::string_view text) {
       path.linear.push_back({path.line.size() - 1, number, modal.xyz});
     }
     if (path.line.size() + path.linear.size() > kMaxBlocks) {
-      return Error{ErrorCode::bad_file, fmt::format("rotary program: more than {} blocks", kMaxBlocks)};
+      return Error{ErrorCode::bad_file, fmt::format("{}: more than {} blocks: split it", name, kMaxBlocks)};
     }
   }
   return path;

@@ -77,7 +77,7 @@ class Rewriter {
 
  private:
   Result<void> take_line(std::string_view line, std::size_t number) {
-    GRAVURE_TRY(const std::vector<Word> words, words_of(line, number));
+    GRAVURE_TRY(const std::vector<Word> words, words_of({r_.name, number, line}));
     bool moves = false;
     bool turns = false;
     for (const Word& word : words) {
@@ -114,10 +114,9 @@ class Rewriter {
     }
     if (!(old_.known[0] && old_.known[1] && old_.known[2])) {
       if (r_.frame == ProgramFrame::machine || r_.ball_radius_mm != 0) {
-        return Error{ErrorCode::bad_file,
-                     fmt::format("rotary program: line {}: X, Y and Z are not all known where A or C turns; start the "
-                                 "program with a move that has all of them",
-                                 number)};
+        return error_at({r_.name, number, {}}, 0,
+                        "X, Y and Z are not all known where A or C turns; start the program with a move that has all "
+                        "of them");
       }
       return next;
     }
@@ -196,25 +195,24 @@ class Rewriter {
 }  // namespace
 
 Result<Rewritten> rewrite_rotary_program(const RewriteRequest& request) {
-  GRAVURE_TRY(const RotaryPath path, parse_rotary_program(request.program));
+  GRAVURE_TRY(const RotaryPath path, parse_rotary_program(request.program, request.name));
   const auto finite = [](std::span<const double> angles) {
     return std::all_of(angles.begin(), angles.end(), [](double angle) { return std::abs(angle) <= 1e9; });
   };
   if (request.a_deg.size() != path.line.size() || request.c_deg.size() != path.line.size() || !finite(request.a_deg) ||
       !finite(request.c_deg)) {
     return Error{ErrorCode::out_of_range,
-                 fmt::format("rotary program: {} blocks, but {} angles of A and {} of C: as many as blocks are needed, "
+                 fmt::format("{}: {} blocks, but {} angles of A and {} of C: as many as blocks are needed, "
                              "each within +-1e9 degrees",
-                             path.line.size(), request.a_deg.size(), request.c_deg.size())};
+                             request.name, path.line.size(), request.a_deg.size(), request.c_deg.size())};
   }
   GRAVURE_TRY(Rewritten rewritten, Rewriter(request).run());
-  GRAVURE_TRY(const RotaryPath back, parse_rotary_program(rewritten.program));
+  GRAVURE_TRY(const RotaryPath back, parse_rotary_program(rewritten.program, request.name));
   for (std::size_t k = 0; k < path.line.size(); ++k) {
     if (back.line.size() != path.line.size() || back.line[k] != path.line[k] ||
         std::abs(back.a_deg[k] - request.a_deg[k]) > 1e-6 || std::abs(back.c_deg[k] - request.c_deg[k]) > 1e-6) {
-      return Error{ErrorCode::bad_file, fmt::format("rotary program: line {} reads otherwise than it was written; the "
-                                                    "program has a form this rewriter does not know",
-                                                    path.line[k])};
+      return error_at({request.name, path.line[k], {}}, 0,
+                      "reads otherwise than it was written; the program has a form this rewriter does not know");
     }
   }
   return rewritten;

@@ -131,11 +131,11 @@ Result<void> check_request(const std::vector<MeasuredPoint>& points, const Calib
 
 Result<std::vector<MeasuredPoint>> parse_measured_points(std::string_view text) {
   std::vector<MeasuredPoint> points;
-  GRAVURE_CHECK(read_csv_rows(text,
-                              {"measured points", "u_order, v_order, u_landing and v_landing in mm, four numbers", 4},
-                              [&points](std::span<const double> row) {
-                                points.push_back({{row[0], row[1]}, {row[2], row[3]}});
-                              }));
+  GRAVURE_CHECK(read_csv_rows(
+      text, {"measured points", "u_order, v_order, u_landing and v_landing in mm, four numbers and no more", 4},
+      [&points](std::span<const double> row) {
+        points.push_back({{row[0], row[1]}, {row[2], row[3]}});
+      }));
   return points;
 }
 

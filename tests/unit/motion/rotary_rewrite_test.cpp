@@ -121,9 +121,9 @@ TEST(RotaryRewrite, ComputesMovesOfXyzAnewThatFollowATurn) {
 TEST(RotaryRewrite, GivesBackAnyTextItReads) {
   GRAVURE_TRACE_SEED();
   test::Random random(test::seed() + 1);
-  const std::vector<std::string> pieces{"X",  "Y-1.5", "Z.5", "A10",  "C-370", " a ",  "c+5", "G1",  "(",
-                                        ")",  ";",     "\n",  "\r\n", "F1",    "N7",   "G20", "#1",  "X1e3",
-                                        "\t", "%",     "",    "M428", "Ann",   "C1C2", "--",  "O<x>"};
+  const std::vector<std::string> pieces{"X",  "Y-1.5", "Z.5",  "A10",  "C-370", " a ",  "c+5", "G1",   "(",    ")",
+                                        ";",  "\n",    "\r\n", "F1",   "N7",    "G20",  "#1",  "X1e3", "X.25", "G4",
+                                        "\t", "%",     "",     "M428", "Ann",   "C1C2", "--",  "O<x>"};
   int read = 0;
   for (int trial = 0; trial < 20'000; ++trial) {
     std::string program;
@@ -144,6 +144,25 @@ TEST(RotaryRewrite, GivesBackAnyTextItReads) {
   EXPECT_GT(read, 2000);
 }
 
+TEST(RotaryProgram, RefusesWhatIsNoWordByLineAndColumn) {
+  for (const auto& [line, column] : std::vector<std::pair<std::string, int>>{
+           {"G1 A1.5.2", 4}, {"G1 A1,8", 4},          {"G1 A+2.5e1", 4},   {"G1 A2E1", 4}, {"G4 P1 A5", 7},
+           {"G80 X1", 5},    {"G1 (A5", 4},           {"G1 A5 (", 7},      {"G1 A", 4},    {"G1 A5 F", 7},
+           {"G1 A--5", 4},   {"G1 A+-5", 4},          {"G1 A1 2", 7},      {"G1 A5)", 6},  {"/G1 A5", 1},
+           {"G1 A5 *37", 7}, {"G1 A5 (a (b) c)", 14}, {"G1 A\xC2\xB5", 4}, {"% G1 A5", 1}, {"G1 A1-2", 4},
+           {"G1 Anan", 4},   {"G1 A1e400", 4},        {"\x01", 1},         {"G1 E5", 4},   {"X1 A5 A6", 4}}) {
+    const auto read = parse_rotary_program("%\nG1 X0 A0 C0\n" + line + "\nM30\n%\n", "f.ngc");
+    ASSERT_FALSE(read) << line;
+    EXPECT_EQ(read.error().code, ErrorCode::bad_file);
+    const std::string place = "f.ngc:3:" + std::to_string(column) + ": ";
+    EXPECT_EQ(read.error().message.substr(0, place.size()), place) << line << ": " << read.error().message;
+  }
+  const RotaryPath path =
+      parse_rotary_program("%\nN10 g1 x .5 a+2. c-0.25(C9)\tF 5 ; A7 (\r\nG4 P1\n( ; A8 )\nG1 A3\n%").value();
+  EXPECT_EQ(path.a_deg, (std::vector<double>{2, 3}));
+  EXPECT_EQ(path.c_deg, (std::vector<double>{-0.25, -0.25}));
+}
+
 TEST(RotaryRewrite, RefusesByLineWhatItCannotWriteAnew) {
   const std::vector<double> one{1};
   for (const char* line :
@@ -152,20 +171,20 @@ TEST(RotaryRewrite, RefusesByLineWhatItCannotWriteAnew) {
     const std::string program = "G1 X0 Y0 Z0 A0 C0\n" + std::string(line) + "\nG90\nG1 A1\n";
     const auto read = parse_rotary_program(program);  // also where nothing is to be written
     ASSERT_FALSE(read) << line;
-    EXPECT_NE(read.error().message.find("line 2"), std::string::npos) << read.error().message;
+    EXPECT_NE(read.error().message.find("program:2:"), std::string::npos) << read.error().message;
     const auto refused = rewrite_rotary_program({program, one, one, ProgramFrame::workpiece, 0, {}});
     ASSERT_FALSE(refused) << line;
     EXPECT_EQ(refused.error().code, ErrorCode::bad_file);
-    EXPECT_NE(refused.error().message.find("line 2"), std::string::npos) << refused.error().message;
+    EXPECT_NE(refused.error().message.find("program:2:"), std::string::npos) << refused.error().message;
   }
   EXPECT_TRUE(parse_rotary_program("M428\nG1 X0 A0\nM429\nM30\n"));
   const auto other_frame = parse_rotary_program("M428\nG1 X0 A0\nM429\nG1 X1\n");
   ASSERT_FALSE(other_frame);
-  EXPECT_NE(other_frame.error().message.find("line 4"), std::string::npos) << other_frame.error().message;
+  EXPECT_NE(other_frame.error().message.find("program:4:"), std::string::npos) << other_frame.error().message;
   EXPECT_TRUE(rewrite_rotary_program({"G55\nG1 X0 Y0 Z0 A0 C0\n(G2)\n", one, one, ProgramFrame::machine, 0, {}}));
   const auto unknown = rewrite_rotary_program({"G1 X0 A0 C0\n", one, one, ProgramFrame::machine, 0, {}});
   ASSERT_FALSE(unknown);
-  EXPECT_NE(unknown.error().message.find("line 1"), std::string::npos);
+  EXPECT_NE(unknown.error().message.find("program:1:"), std::string::npos);
   const std::vector<double> two{1, 2};
   EXPECT_EQ(rewrite_rotary_program({"G1 A0\n", two, two, ProgramFrame::workpiece, 0, {}}).error().code,
             ErrorCode::out_of_range);

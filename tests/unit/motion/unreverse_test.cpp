@@ -289,7 +289,7 @@ TEST(RotaryProgram, ReadsModalWordsAndSkipsComments) {
   EXPECT_EQ(path.linear[0].xyz_mm[1], 2);
   EXPECT_EQ(path.linear[1].block, 1U);
   EXPECT_EQ(path.linear[1].xyz_mm[2], 9);
-  EXPECT_NE(parse_rotary_program("G1\nA C3\n").error().message.find("line 2"), std::string::npos);
+  EXPECT_NE(parse_rotary_program("G1\nA C3\n").error().message.find("program:2:"), std::string::npos);
 }
 
 }  // namespace

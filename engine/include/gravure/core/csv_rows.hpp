@@ -15,11 +15,11 @@ inline constexpr std::size_t kMostCsvColumns = 6;
 struct CsvColumns {
   std::string_view subject;  ///< "recording"
   std::string_view meaning;  ///< "time in s and acceleration in mm/s^2, two numbers"
-  std::size_t count = 2;     ///< at most kMostCsvColumns; further ones are not read
+  std::size_t count = 2;     ///< at most kMostCsvColumns; a line with more is refused
 };
 
 /// Calls `row` with the numbers of each line, separated by comma, semicolon, tab or blanks. A first line that does not
-/// start with a number is a heading; lines that start with # are comments. bad_file names the line that is anything
+/// start with a number is a heading; what follows a # is a comment. bad_file names the line that is anything
 /// else, and more than 10 million rows.
 Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
                            const std::function<void(std::span<const double>)>& row);

@@ -22,6 +22,7 @@ struct RewriteRequest {
   ProgramFrame frame = ProgramFrame::workpiece;
   double ball_radius_mm = 0;  ///< of the tool's end, whose centre is held; 0 holds the tip or the focus
   Vector3 rotary_centre_mm{};
+  std::string_view name = "rotary program";  ///< for errors
 };
 
 struct Rewritten {

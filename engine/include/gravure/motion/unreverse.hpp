@@ -77,8 +77,9 @@ struct RotaryPath {
 };
 
 /// The blocks of a program with their modal words. Comments in brackets or after a semicolon are left out. bad_file
-/// names the line of a word without a number, and of all that is no straight, absolute move in mm (arcs, cycles, G20,
-/// G91, offsets after the first move, other axes, variables, calls); at most 10 million blocks.
-Result<RotaryPath> parse_rotary_program(std::string_view text);
+/// starts with name:line:column, for a letter without a plain decimal number, an open comment, and all that is no
+/// straight, absolute move in mm (arcs, cycles, dwells that name an axis, G20, G91, offsets after the first move, other
+/// axes, variables, calls); at most 10 million blocks.
+Result<RotaryPath> parse_rotary_program(std::string_view text, std::string_view name = "rotary program");
 
 }  // namespace gravure::motion
