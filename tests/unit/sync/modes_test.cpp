@@ -19,8 +19,12 @@ Job helical_job() {
   Job job = roller_job();
   job.mode = Mode::helical;
   job.rotary.interpolation_bits = 7;  // short lines, so it turns faster
-  job.carriage = {
-      .feed_pixels = 64, .layers = 8, .encoder_pitch_um = 20, .interpolation_bits = 8, .max_ab_hz = 2'000'000};
+  job.carriage = {.feed_pixels = 64,
+                  .layers = 8,
+                  .encoder_pitch_um = 20,
+                  .interpolation_bits = 8,
+                  .max_ab_hz = 2'000'000,
+                  .limits = {}};
   return job;
 }
 
@@ -28,8 +32,12 @@ Job flat_job() {
   Job job = roller_job();
   job.mode = Mode::flat;
   job.rotary = {};
-  job.stage = {
-      .lines = 5000, .line_pitch_um = 8, .encoder_pitch_um = 20, .interpolation_bits = 8, .max_ab_hz = 2'000'000};
+  job.stage = {.lines = 5000,
+               .line_pitch_um = 8,
+               .encoder_pitch_um = 20,
+               .interpolation_bits = 8,
+               .max_ab_hz = 2'000'000,
+               .limits = {}};
   return job;
 }
 

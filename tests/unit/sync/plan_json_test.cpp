@@ -196,10 +196,18 @@ TEST(PlanJson, ReadsBackRandomPlansOfAnySize) {
     job.rotary.gear_workpiece_turns = random.count(90, 200);
     job.limits.seam_um = ratio(1, random.count(1, 1'000'000));
     job.mode = static_cast<Mode>(random.between(0, 2));
-    job.carriage = {ratio(random.count(1, 100'000), random.count(1, 1009)), random.count(1, 9),
-                    ratio(random.count(1, 1'000'000), 1009), static_cast<int>(random.between(0, 12)), 2'000'000};
-    job.stage = {random.count(1, 100'000), ratio(random.count(1, 100'000), 1009),
-                 ratio(random.count(1, 1'000'000), 1009), static_cast<int>(random.between(0, 12)), 2'000'000};
+    job.carriage = {ratio(random.count(1, 100'000), random.count(1, 1009)),
+                    random.count(1, 9),
+                    ratio(random.count(1, 1'000'000), 1009),
+                    static_cast<int>(random.between(0, 12)),
+                    2'000'000,
+                    {}};
+    job.stage = {random.count(1, 100'000),
+                 ratio(random.count(1, 100'000), 1009),
+                 ratio(random.count(1, 1'000'000), 1009),
+                 static_cast<int>(random.between(0, 12)),
+                 2'000'000,
+                 {}};
     if (random.chance(2) && job.mode != Mode::helical) {
       job.scanner.field_mm = ratio(random.count(1, 100'000), 1009);
     }
@@ -232,7 +240,7 @@ TEST(PlanJson, HasTheSectionsOfItsMode) {
   Job job = roller_job();
   job.mode = Mode::helical;
   job.rotary.interpolation_bits = 7;
-  job.carriage = {64, 8, 20, 8, 2'000'000};
+  job.carriage = {64, 8, 20, 8, 2'000'000, {}};
   const ordered_json helical = ordered_json::parse(plan_to_json(planned(job, 15'000, 8)));
   EXPECT_EQ(helical["mode"], "helical");
   expect_first_keys(helical["carriage"],
@@ -242,7 +250,7 @@ TEST(PlanJson, HasTheSectionsOfItsMode) {
   }
   EXPECT_FALSE(helical.contains("bands"));
   job.mode = Mode::flat;
-  job.stage = {5000, 8, 20, 8, 2'000'000};
+  job.stage = {5000, 8, 20, 8, 2'000'000, {}};
   job.scanner.field_mm = 30;
   const ordered_json flat = ordered_json::parse(plan_to_json(planned(job, 5000, 2)));
   EXPECT_FALSE(flat.contains("rotary") || flat.contains("carriage"));
@@ -256,7 +264,7 @@ TEST(PlanJson, RefusesCarriagesAndBandsThatContradictThePlan) {
   Job job = roller_job();
   job.mode = Mode::helical;
   job.rotary.interpolation_bits = 7;
-  job.carriage = {64, 8, 20, 8, 2'000'000};
+  job.carriage = {64, 8, 20, 8, 2'000'000, {}};
   const ordered_json helical = ordered_json::parse(plan_to_json(planned(job, 15'000, 8)));
   job.mode = Mode::rotary;
   job.scanner.field_mm = 30;

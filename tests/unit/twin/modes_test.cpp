@@ -29,8 +29,8 @@ void prepare(SmallJob& small, const Shape& shape) {
   small.job.scanner.bidirectional = shape.bidirectional;
   small.job.image.lines_along = shape.along;
   small.job.image.fires = shape.fires;
-  small.job.carriage = {shape.feed, shape.layers, 20, 4, 41'000'000};
-  small.job.stage = {shape.lines, 8, 20, 4, 2'000'000};
+  small.job.carriage = {shape.feed, shape.layers, 20, 4, 41'000'000, {}};
+  small.job.stage = {shape.lines, 8, 20, 4, 2'000'000, {}};
   if (shape.field_pixels > 0) {
     small.job.scanner.field_mm = ratio(8 * shape.field_pixels + 7, 1000);
   }
