@@ -1,5 +1,6 @@
 #include "sample_sets.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -60,7 +61,20 @@ RowSource turned(const RowSource& upright) {
   };
 }
 
-/// Six bilevel layers, each in another compression; once upright (job.toml), once on their side (columns.toml).
+/// Three of these pictures along the rows and two down, the second of each turned over: what repeat.toml exposes.
+RowSource repeated(const RowSource& tile) {
+  return [tile](std::int64_t y, std::vector<std::uint16_t>& levels) {
+    std::vector<std::uint16_t> row(static_cast<std::size_t>(kSmallPixels));
+    tile(y < kSmallLines ? y : 2 * kSmallLines - 1 - y, row);
+    const auto at = levels.begin();
+    std::copy(row.begin(), row.end(), at);
+    std::copy(row.rbegin(), row.rend(), at + kSmallPixels);
+    std::copy(row.begin(), row.end(), at + 2 * kSmallPixels);
+  };
+}
+
+/// Six bilevel layers, each in another compression; once upright (job.toml), once on their side (columns.toml); one of
+/// them as tiles side by side.
 Result<void> make_small(const std::string& folder) {
   std::error_code ignored;  // write_image says so if the folder is missing
   std::filesystem::create_directories(folder + "/columns", ignored);
@@ -80,6 +94,10 @@ Result<void> make_small(const std::string& folder) {
     const RowSource picture = small_layer(layer);
     GRAVURE_CHECK(write_image(upright_path, kSmallPixels, kSmallLines, {picture}, options));
     GRAVURE_CHECK(write_image(turned_path, kSmallLines, kSmallPixels, {turned(picture)}, options));
+    if (layer == 4) {
+      GRAVURE_CHECK(
+          write_image(folder + "/repeated.tif", 3 * kSmallPixels, 2 * kSmallLines, {repeated(picture)}, options));
+    }
     ++layer;
   }
   return {};
@@ -140,7 +158,7 @@ const std::vector<SampleSet>& sample_sets() {
       {"stent", "bilevel G4 mask of a diamond lattice, 3000 x 942 pixels", make_stent},
       {"helical_roller", "eight bilevel G4 layers of a roller face, 15000 x 7840 pixels", make_helical_roller},
       {"panel", "four bilevel G4 layers of a panel, 5000 x 5000 pixels", make_panel},
-      {"small", "six bilevel layers of 200 x 240 pixels, upright and on their side", make_small},
+      {"small", "six bilevel layers of 200 x 240 pixels, upright and on their side, one as tiles", make_small},
       {"formats", "one small picture in every format that is read", make_formats},
   };
   return sets;

@@ -31,13 +31,20 @@ inline bool fires(const LayerStack& stack, const ImageInfo& info, std::int64_t l
   return pulses > level;
 }
 
+/// Where a row or column of a picture of tiles lies in its tile.
+inline std::int64_t in_tile(std::int64_t at, std::int64_t length, bool mirror) {
+  return mirror && at / length % 2 != 0 ? length - 1 - at % length : at % length;
+}
+
 /// Pixel `column` of line `line` of a layer, as the image has it.
 inline bool image_pixel(const LayerStack& stack, MemoryImages& images, std::int64_t layer, std::int64_t line,
                         std::int64_t column) {
   const LayerInput& input = stack.layers[static_cast<std::size_t>(layer)];
   const MemoryImages::Image& image = images.at(input.path, input.page);
   const bool rows = stack.lines_along == LinesAlong::rows;
-  return fires(stack, image.info, input.level, rows ? image.samples(line, column) : image.samples(column, line));
+  const std::int64_t y = in_tile(rows ? line : column, image.info.height, stack.tiles.mirror_down);
+  const std::int64_t x = in_tile(rows ? column : line, image.info.width, stack.tiles.mirror_across);
+  return fires(stack, image.info, input.level, image.samples(y, x));
 }
 
 inline void set_bit(std::vector<std::byte>& bytes, std::int64_t bit) {

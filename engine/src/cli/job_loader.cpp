@@ -50,17 +50,17 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
                  loaded.job.place_of("image") + "[image] names no files: give image.files or image.depth_map"};
   }
   std::optional<std::int64_t> layers = image.levels;
+  std::int64_t columns = image.pixels_per_line.value_or(0);
   if (loaded.images) {
     layers = loaded.images->layers;
-    loaded.columns = scan_size(image, loaded.images->width(), loaded.images->height()).pixels_per_line;
-    if (image.pixels_per_line && *image.pixels_per_line != loaded.columns) {
+    columns = scan_size(image, loaded.images->width(), loaded.images->height()).pixels_per_line;
+    if (image.pixels_per_line && *image.pixels_per_line != columns) {
       return Error{ErrorCode::bad_argument, loaded.job.place_of("image.pixels_per_line") +
                                                 "image.pixels_per_line = " + std::to_string(*image.pixels_per_line) +
-                                                ": the images have " + std::to_string(loaded.columns)};
+                                                ": the images have " + std::to_string(columns)};
     }
-  } else {
-    loaded.columns = image.pixels_per_line.value_or(0);
   }
+  GRAVURE_TRY(loaded.columns, picture_columns(loaded.job, columns));
   GRAVURE_TRY(const std::int64_t exposures, resolve_revolutions(loaded.job, layers));
   GRAVURE_TRY(loaded.plan, make_plan(loaded.job, loaded.columns, exposures));
   if (loaded.images) {
@@ -70,7 +70,7 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
     all.insert(all.end(), warnings.begin(), warnings.end());
   } else if (names_images(image)) {
     loaded.plan.warnings.emplace_back("the images are not there yet; planned with image.pixels_per_line = " +
-                                      std::to_string(loaded.columns));
+                                      std::to_string(columns));
   }
   return loaded;
 }
@@ -88,8 +88,10 @@ std::uint32_t StoredLayers::number(std::int64_t revolution) {
   return known_.try_emplace({band, image_layer(revolution), map_.runs_backwards(revolution)}, next).first->second;
 }
 
-LayerStack stack_settings(const ImageSettings& image, const Plan& plan) {
+LayerStack stack_settings(const Job& job, const Plan& plan) {
+  const ImageSettings& image = job.image;
   LayerStack stack;
+  stack.tiles = tile_grid(job.repeat, image.lines_along);
   stack.lines = plan.rotary.lines_per_revolution;
   stack.pixels = image_columns(plan);
   stack.lines_along = image.lines_along;
@@ -189,11 +191,12 @@ Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::stri
   header.job_path = relative_to(loaded.job.path, fs::path(program_path).parent_path());
   header.fires = loaded.job.image.fires;
   header.lines_along = loaded.job.image.lines_along;
-  made.stack = stack_settings(loaded.job.image, loaded.plan);
+  made.stack = stack_settings(loaded.job, loaded.plan);
   made.stack.samples = images.images.front().info.samples;
   made.stack.decoder_bytes = 0;
   for (const StackImage& image : images.images) {
-    made.stack.decoder_bytes = std::max(*made.stack.decoder_bytes, image.info.decoder_bytes);
+    made.stack.decoder_bytes =
+        std::max(*made.stack.decoder_bytes, tiled_info(image.info, made.stack.tiles).decoder_bytes);
   }
   made.stack.random_access = std::all_of(images.images.begin(), images.images.end(),
                                          [](const StackImage& image) { return image.info.random_access; });

@@ -52,6 +52,6 @@ class StoredLayers {
 };
 
 /// Settings of a stack that come from the job.
-LayerStack stack_settings(const ImageSettings& image, const Plan& plan);
+LayerStack stack_settings(const Job& job, const Plan& plan);
 
 }  // namespace gravure::cli

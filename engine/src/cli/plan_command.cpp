@@ -48,6 +48,20 @@ std::string seam_text(const AbPlan& ab, bool flat) {
       to_string(*ab.lines_until_limit), to_string(ab.bound_lines_until_limit));
 }
 
+/// How the images are laid side by side; nothing where they are not.
+std::string repeat_text(const LoadedJob& loaded) {
+  const RepeatSettings& repeat = loaded.job.repeat;
+  if (repeat.around == 1 && repeat.along == 1) {
+    return "";
+  }
+  const bool mirrored = repeat.mirror_around || repeat.mirror_along;
+  return fmt::format("{:<10}{} images around, {} along{}{}{}{}, each of {} lines of {} pixels\n", "repeat",
+                     repeat.around, repeat.along, mirrored ? ", every other one turned over " : "",
+                     repeat.mirror_around ? "around" : "", repeat.mirror_around && repeat.mirror_along ? " and " : "",
+                     repeat.mirror_along ? "along" : "", loaded.plan.rotary.lines_per_revolution / repeat.around,
+                     loaded.columns / repeat.along);
+}
+
 }  // namespace
 
 std::string plan_text(const Plan& plan) {
@@ -110,12 +124,19 @@ void add_plan(CLI::App& app, Command& command) {
         plan["image"] = {{"fires", polarity_name(image.fires)},
                          {"lines_along", image.lines_along == LinesAlong::rows ? "rows" : "columns"},
                          {"order", order_name(image.order)}};
+        if (const RepeatSettings& repeat = loaded.job.repeat; repeat.around > 1 || repeat.along > 1) {
+          plan["image"]["repeat"] = {{"around", repeat.around},
+                                     {"along", repeat.along},
+                                     {"mirror_around", repeat.mirror_around},
+                                     {"mirror_along", repeat.mirror_along}};
+        }
         print_json(plan);
       } else {
         print(plan_text(loaded.plan));
         print(fmt::format("{:<10}{} fires, lines along {}, layers in order \"{}\"\n", "image",
                           polarity_name(image.fires), image.lines_along == LinesAlong::rows ? "rows" : "columns",
                           order_name(image.order)));
+        print(repeat_text(loaded));
       }
       for (const std::string& warning : loaded.plan.warnings) {
         warn(warning);

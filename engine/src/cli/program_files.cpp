@@ -115,7 +115,7 @@ Result<FoundImages> find_images(const ProgramHeader& header, const std::string& 
                                           std::to_string(header.plan.carriage->layers) + " layers: compile it again"};
   }
   GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));
-  LayerStack stack = stack_settings(job.image, header.plan);
+  LayerStack stack = stack_settings(job, header.plan);
   const auto layers = static_cast<std::int64_t>(header.layers.size());
   for (std::int64_t layer = 0; layer < (header.plan.carriage ? header.plan.carriage->layers : layers); ++layer) {
     const LayerOrigin origin = origin_of(header, layer);

@@ -91,7 +91,7 @@ void learn_images(LayerStack& stack, const ImageOpener& opener) {
     if (!seen.emplace(input.path, input.page).second) {
       continue;
     }
-    const Result<std::unique_ptr<ImageSource>> opened = opener.open(input.path, input.page);
+    const Result<std::unique_ptr<ImageSource>> opened = open_tiled(opener, input.path, input.page, stack.tiles);
     if (!opened) {
       continue;
     }
@@ -166,7 +166,7 @@ Result<void> LayerReader::select(const LayerInput& input) {
   }
   source_.reset();
   held_count_ = 0;
-  GRAVURE_TRY(std::unique_ptr<ImageSource> opened, opener_.open(input.path, input.page));
+  GRAVURE_TRY(std::unique_ptr<ImageSource> opened, open_tiled(opener_, input.path, input.page, stack_.tiles));
   GRAVURE_CHECK(check_image(input, opened->info()));
   source_ = std::move(opened);
   path_ = input.path;
@@ -178,7 +178,7 @@ Result<void> LayerReader::select(const LayerInput& input) {
 Result<void> LayerReader::read_rows(std::int64_t first_row, std::int64_t count, std::span<std::byte> out) {
   if (!source_->info().random_access && first_row < next_row_) {  // such a file only runs upwards: start it again
     source_.reset();                                              // one at a time is what its memory is counted for
-    GRAVURE_TRY(source_, opener_.open(path_, page_));
+    GRAVURE_TRY(source_, open_tiled(opener_, path_, page_, stack_.tiles));
   }
   next_row_ = first_row + count;
   Result<void> read =

@@ -84,6 +84,50 @@ TEST_F(StackCheck, SaysWhenTheImageOnlyLiesTheOtherWay) {
   EXPECT_TRUE(has(refusal(), "[image] lines_along = \"rows\""));
 }
 
+TEST_F(StackCheck, CountsEveryTileOfARepeatedImage) {
+  job_.repeat.around = 11;
+  job_.repeat.along = 4;
+  set_size(875, 2499);
+  stack_.images[0].info.x_dots_per_mm = stack_.images[0].info.y_dots_per_mm = 125;
+  EXPECT_TRUE(warnings().empty()) << "the size tags are those of a tile";
+  job_.image.lines_along = LinesAlong::columns;
+  set_size(2499, 875);
+  EXPECT_TRUE(warnings().empty());
+}
+
+TEST_F(StackCheck, SaysWhichTilesWouldFit) {
+  job_.repeat.around = 10;
+  set_size(3500, 2499);
+  const std::string message = refusal();
+  EXPECT_TRUE(has(message, "and [repeat] around = 10, along = 1 makes them 24990 lines of 3500")) << message;
+  EXPECT_TRUE(has(message, "an image of 3500 x 3927 pixels with [repeat] around = 7")) << message;
+  EXPECT_TRUE(has(message, "an image of 3500 x 2499 pixels with [repeat] around = 11")) << message;
+  EXPECT_TRUE(has(message, "\n  [repeat] around = 11\n")) << message;
+  EXPECT_TRUE(has(message, "lines_per_revolution = 24990 ")) << message;
+  job_.repeat.around = 11;
+  set_size(3500, 2500);
+  EXPECT_TRUE(has(refusal(), "\n  an image of 3500 x 2499 pixels\n  [rotary] lines_per_revolution = 27500 "));
+}
+
+TEST_F(StackCheck, StartsAtTheKeyOfTheTiles) {
+  job_.path = "job.toml";
+  job_.places["repeat.around"] = {30, 3};
+  job_.repeat.around = 2;
+  EXPECT_EQ(refusal().rfind("job.toml:30:3: ", 0), 0U) << refusal();
+}
+
+TEST_F(StackCheck, RefusesMoreTilesThanALineHolds) {
+  job_.repeat.along = 300'000;
+  const auto columns = picture_columns(job_, 3500);
+  ASSERT_FALSE(columns);
+  EXPECT_EQ(columns.error().code, ErrorCode::out_of_range);
+  EXPECT_TRUE(has(columns.error().message, "[repeat] along = 300000")) << columns.error().message;
+  EXPECT_TRUE(has(columns.error().message, "at most 285714 fit")) << columns.error().message;
+  job_.repeat.along = 285'714;
+  ASSERT_TRUE(picture_columns(job_, 3500));
+  EXPECT_EQ(picture_columns(job_, 3500).value(), 999'999'000);
+}
+
 TEST_F(StackCheck, WarnsOfSizeTagsBeyondATenthOfAPercent) {
   stack_.images[0].info.x_dots_per_mm = 125.12;  // 0.096 % off 125
   stack_.images[0].info.y_dots_per_mm = 125;     // 0.0004 % off

@@ -20,6 +20,7 @@ struct Shape {
   bool bidirectional = true;
   std::int64_t levels = 0;     ///< a depth map of so many
   bool only_forwards = false;  ///< the files must be read from their first row on
+  RepeatSettings repeat;       ///< lines and columns are those of the whole picture
 };
 
 void prepare(SmallJob& small, const Shape& shape) {
@@ -34,10 +35,15 @@ void prepare(SmallJob& small, const Shape& shape) {
   if (shape.field_pixels > 0) {
     small.job.scanner.field_mm = ratio(8 * shape.field_pixels + 7, 1000);
   }
+  const std::int64_t tile_lines = shape.lines / shape.repeat.around;
+  const std::int64_t tile_columns = shape.columns / shape.repeat.along;
   small.stack =
       shape.levels > 0
-          ? depth_stack(small.images, SampleType::u8, shape.along, shape.lines, shape.columns, shape.levels, 7)
-          : random_stack(small.images, SampleType::bit, shape.along, shape.lines, shape.columns, shape.layers, 7);
+          ? depth_stack(small.images, SampleType::u8, shape.along, tile_lines, tile_columns, shape.levels, 7)
+          : random_stack(small.images, SampleType::bit, shape.along, tile_lines, tile_columns, shape.layers, 7);
+  small.stack.lines = shape.lines;
+  small.stack.pixels = shape.columns;
+  small.stack.tiles = tile_grid(shape.repeat, shape.along);
   small.stack.fires = shape.fires;
   small.stack.random_access = !shape.only_forwards;
   for (const LayerInput& input : small.stack.layers) {
@@ -129,28 +135,61 @@ std::string text_of(const Shape& shape) {
   return std::string(mode_name(shape.mode)) + ", " + std::to_string(shape.lines) + " lines, " +
          std::to_string(shape.columns) + " columns, " + std::to_string(shape.layers) + " layers, feed " +
          to_string(shape.feed) + ", field " + std::to_string(shape.field_pixels) +
-         (shape.along == LinesAlong::rows ? ", rows" : ", columns") + (shape.bidirectional ? ", both ways" : "");
+         (shape.along == LinesAlong::rows ? ", rows" : ", columns") + (shape.bidirectional ? ", both ways" : "") +
+         ", tiles " + std::to_string(shape.repeat.around) + " x " + std::to_string(shape.repeat.along) +
+         (shape.repeat.mirror_around ? ", mirrored around" : "") + (shape.repeat.mirror_along ? ", along" : "");
+}
+
+/// A shape of any mode.
+Shape random_shape(Dice& dice, Mode mode) {
+  Shape shape;
+  shape.mode = mode;
+  shape.lines = dice.between(1, 20);
+  shape.columns = dice.between(1, 90);
+  shape.layers = dice.between(1, 4);
+  const std::int64_t den = dice.coin() ? 1 : dice.between(1, 9);
+  shape.feed = ratio(dice.between(2, 12 * den), den);
+  shape.field_pixels = mode == Mode::helical ? 0 : dice.between(mode == Mode::rotary ? 1 : 0, 60);
+  shape.along = dice.coin() ? LinesAlong::rows : LinesAlong::columns;
+  shape.fires = dice.coin() ? Fires::white : Fires::black;
+  shape.bidirectional = dice.between(0, 3) != 0;
+  if (dice.between(0, 3) == 0) {
+    shape.levels = shape.layers;
+  }
+  shape.only_forwards = dice.between(0, 2) == 0;
+  return shape;
 }
 
 TEST(Modes, ComeBackAsTheImagesTheyWereMadeFrom) {
   SCOPED_TRACE(Dice::note());
   Dice dice;
   for (int trial = 0; trial < 120; ++trial) {
-    Shape shape;
-    shape.mode = static_cast<Mode>(trial % 3);
-    shape.lines = dice.between(1, 20);
-    shape.columns = dice.between(1, 90);
-    shape.layers = dice.between(1, 4);
-    const std::int64_t den = dice.coin() ? 1 : dice.between(1, 9);
-    shape.feed = ratio(dice.between(2, 12 * den), den);
-    shape.field_pixels = shape.mode == Mode::helical ? 0 : dice.between(shape.mode == Mode::rotary ? 1 : 0, 60);
-    shape.along = dice.coin() ? LinesAlong::rows : LinesAlong::columns;
-    shape.fires = dice.coin() ? Fires::white : Fires::black;
-    shape.bidirectional = dice.between(0, 3) != 0;
-    if (dice.between(0, 3) == 0) {
-      shape.levels = shape.layers;
+    const Shape shape = random_shape(dice, static_cast<Mode>(trial % 3));
+    SCOPED_TRACE(text_of(shape));
+    SmallJob small;
+    prepare(small, shape);
+    compile_shape(small, shape, dice.between(1, 8), {.threads = 2});
+    if (HasFatalFailure()) {
+      return;
     }
-    shape.only_forwards = dice.between(0, 2) == 0;
+    expect_round_trip(small, shape);
+    if (HasFailure()) {
+      return;
+    }
+  }
+}
+
+TEST(Modes, ComeBackAsThePicturesThatTilesMake) {
+  SCOPED_TRACE(Dice::note());
+  Dice dice;
+  for (int trial = 0; trial < 90; ++trial) {
+    Shape shape = random_shape(dice, static_cast<Mode>(trial % 3));
+    shape.repeat.around = dice.between(1, 5);
+    shape.repeat.along = dice.between(1, 5);
+    shape.repeat.mirror_around = dice.coin();
+    shape.repeat.mirror_along = dice.coin();
+    shape.lines = dice.between(1, 7) * shape.repeat.around;
+    shape.columns = dice.between(1, 20) * shape.repeat.along;
     SCOPED_TRACE(text_of(shape));
     SmallJob small;
     prepare(small, shape);

@@ -8,6 +8,7 @@
 #include "gravure/core/image_source.hpp"
 #include "gravure/core/job.hpp"
 #include "gravure/core/layer_lines.hpp"
+#include "gravure/pipeline/tiles.hpp"
 #include "gravure/raster/slice.hpp"
 
 namespace gravure {
@@ -24,6 +25,7 @@ struct LayerStack {
   std::vector<LayerInput> layers;
   std::int64_t lines = 0;   ///< of every layer
   std::int64_t pixels = 0;  ///< of every line
+  TileGrid tiles;           ///< a layer is its image so many times side by side
   SampleType samples = SampleType::bit;
   bool random_access = true;  ///< false: one of the files must be read from its first row on
   /// The most that a reader of one of the images holds (ImageInfo). Left out: found by opening each of them.
