@@ -51,7 +51,7 @@ Result<void> ProgramChunk::load(LineSource& program, ChunkAddress address) {
   return {};
 }
 
-Result<void> ProgramChunk::send(const ProgramHeader& header, std::int64_t revolution, DeviceLink& device) {
+std::span<const std::byte> ProgramChunk::lines_for(const ProgramHeader& header, std::int64_t revolution) {
   const Plan& plan = header.plan;
   const bool starts_reverse = line_is_reverse(plan, revolution, 0);
   const bool turn = starts_reverse != header.layers[size(address_.layer)].starts_reverse;
@@ -60,7 +60,12 @@ Result<void> ProgramChunk::send(const ProgramHeader& header, std::int64_t revolu
     raster::place_rows(turned_, stored_, plan.line.pixels, lines_, {.first_mirrored = true});
     turned_valid_ = true;
   }
-  const std::vector<std::byte>& lines = turn ? turned_ : stored_;
+  return turn ? turned_ : stored_;
+}
+
+Result<void> ProgramChunk::send(const ProgramHeader& header, std::int64_t revolution, DeviceLink& device) {
+  const Plan& plan = header.plan;
+  const std::span<const std::byte> lines = lines_for(header, revolution);
   const std::int64_t bytes = header.line_bytes();
   for (std::int64_t i = 0; i < lines_; ++i) {
     LineFrame frame;
@@ -68,7 +73,7 @@ Result<void> ProgramChunk::send(const ProgramHeader& header, std::int64_t revolu
     frame.line = first_line_ + i;
     frame.first_slot =
         line_is_reverse(plan, revolution, frame.line) ? plan.line.reverse_first_slot : plan.line.forward_first_slot;
-    frame.bits = std::span<const std::byte>(lines).subspan(size(i * bytes), size(bytes));
+    frame.bits = lines.subspan(size(i * bytes), size(bytes));
     frame.crc32c = frame_crc32c(frame);
     GRAVURE_CHECK(device.send(frame));
   }

@@ -21,6 +21,8 @@ class ProgramChunk {
  public:
   /// Reads and verifies a chunk; keeps it until another is asked for.
   Result<void> load(LineSource& program, ChunkAddress address);
+  /// The chunk's lines in time order, as a revolution that exposes its layer has them; valid until the next call.
+  std::span<const std::byte> lines_for(const ProgramHeader& header, std::int64_t revolution);
   /// Sends the chunk's lines for a revolution that exposes its layer. A device refusal is returned as it is.
   Result<void> send(const ProgramHeader& header, std::int64_t revolution, DeviceLink& device);
   std::int64_t first_line() const noexcept { return first_line_; }

@@ -1,0 +1,285 @@
+#include "error_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+namespace gravure {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+Interval operator+(const Interval& a, const Interval& b) noexcept {
+  return {a.least + b.least, a.most + b.most};
+}
+
+Interval at(double value) noexcept {
+  return {value, value};
+}
+
+Interval between(double a, double b) noexcept {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+Interval times(const Interval& range, double factor) noexcept {
+  return between(range.least * factor, range.most * factor);
+}
+
+bool is_set(std::span<const std::byte> bits, std::int64_t index) noexcept {
+  return (std::to_integer<unsigned>(bits[static_cast<std::size_t>(index / 8)]) >> (7U - (index & 7))) & 1U;
+}
+
+AxisTerms axis_terms(const TwinSettings& twin) {
+  return {twin.drift, twin.ab_step, twin.servo.enabled, to_double(twin.servo.bandwidth_hz),
+          to_double(twin.servo.damping)};
+}
+
+}  // namespace
+
+void PulseSums::merge(const PulseSums& other) {
+  pulses += other.pulses;
+  squares_um2 += other.squares_um2;
+  const auto order = [](const PulsePlace& place) { return std::tie(place.revolution, place.line, place.slot); };
+  if (other.worst_um2 > worst_um2 || (other.worst_um2 == worst_um2 && order(other.worst) < order(worst))) {
+    worst_um2 = other.worst_um2;
+    worst = other.worst;
+  }
+}
+
+/// What the pulses of a line have in common.
+struct ErrorModel::Line {
+  const LineErrors* errors = nullptr;
+  bool reverse = false;
+  std::int64_t first_slot = 0;
+  std::int64_t first_tick = 0;  ///< of the first pulse
+  Shift shift;
+  double first_column_um = 0;  ///< of pixel 0
+  double offset_um = 0;        ///< helical: what rounding does to the share of a column that U takes up
+  AxisMotion::Start axis_start;
+  double axis_drift_um = 0;  ///< at the first pulse
+  AxisMotion::Start carriage_start;
+  double carriage_drift_um = 0;
+};
+
+Result<ErrorModel> ErrorModel::make(const Plan& plan, const scan::LineTrajectory* trajectory,
+                                    const TwinSettings& twin) {
+  ErrorModel model(plan);
+  GRAVURE_TRY(model.axis_, AxisMotion::make(plan, axis_terms(twin)));
+  if (plan.carriage) {
+    GRAVURE_TRY(model.carriage_, AxisMotion::make_carriage(plan, axis_terms(twin)));
+    model.columns_per_line_ =
+        to_double(Rational(plan.carriage->feed_pixels / Rational(plan.rotary.lines_per_revolution)));
+  }
+  model.column_um_ = to_double(plan.line.pixel_pitch_um);
+  model.scanner_ = {LineErrors::none(plan.line.pixels), LineErrors::none(plan.line.pixels)};
+  if (trajectory != nullptr) {
+    model.scanner_ = scanner_errors(*trajectory, {twin.galvo_resolution, twin.microvectors, twin.cross_scan, twin.lag});
+    model.rounded_offset_um_ = plan.carriage && twin.galvo_resolution ? trajectory->resolution_mm * 1000 : 0;
+    model.set_offset_range();
+  }
+  model.radius_um_ = to_double(plan.rotary.circumference_um) / (2 * kPi);
+  if (twin.run_out.enabled && plan.mode != Mode::flat) {
+    model.run_out_ = RunOut{to_double(twin.run_out.eccentricity_um), to_double(twin.run_out.angle_deg) * kPi / 180};
+  }
+  if (twin.thermal.enabled) {
+    model.growth_ = to_double(Rational(twin.thermal.temperature_change_k * twin.thermal.expansion_um_per_m_k)) * 1e-6;
+  }
+  return model;
+}
+
+ErrorModel::Shift ErrorModel::shift_at(std::int64_t revolution, std::int64_t line) const {
+  Shift shift;
+  if (plan_.mode == Mode::flat) {  // grows away from line 0 of the image
+    const double from_fixed_um =
+        static_cast<double>(map_.image_line(revolution, line)) * to_double(plan_.rotary.line_pitch_um);
+    shift.onwards = growth_ * from_fixed_um * (map_.runs_backwards(revolution) ? -1 : 1);
+    return shift;
+  }
+  shift.outwards = growth_ * radius_um_;
+  if (run_out_) {
+    const double from_high_spot =
+        2 * kPi * static_cast<double>(line) / static_cast<double>(plan_.rotary.lines_per_revolution) -
+        run_out_->angle_rad;
+    shift.outwards += run_out_->eccentricity_um * std::cos(from_high_spot);
+    shift.onwards -= run_out_->eccentricity_um * std::sin(from_high_spot);
+  }
+  return shift;
+}
+
+/// A helical line that starts on a fraction of a column has its set-points moved by that, in whole counts.
+double ErrorModel::rounded_off_um(double share) const {
+  const double counts = share * column_um_ / rounded_offset_um_;
+  return (counts - std::round(counts)) * rounded_offset_um_;
+}
+
+double ErrorModel::column_offset_um(std::int64_t revolution, std::int64_t line) const {
+  if (rounded_offset_um_ == 0) {
+    return 0;
+  }
+  const std::int64_t steps = (revolution - plan_.carriage->layers) * plan_.rotary.lines_per_revolution + line;
+  return rounded_off_um(columns_per_line_ * static_cast<double>(steps) - static_cast<double>(map_.column_after(steps)));
+}
+
+/// The fractions are all multiples of one over the denominator of the columns a line.
+void ErrorModel::set_offset_range() {
+  constexpr std::int64_t kMostFractions = 100'000;
+  if (rounded_offset_um_ == 0) {
+    return;
+  }
+  const Integer fractions =
+      denominator_of(Rational(plan_.carriage->feed_pixels / Rational(plan_.rotary.lines_per_revolution)));
+  if (fractions > kMostFractions) {
+    offset_range_ = {-rounded_offset_um_ / 2, rounded_offset_um_ / 2};
+    return;
+  }
+  const auto count = static_cast<std::int64_t>(fractions);
+  for (std::int64_t i = 0; i < count; ++i) {
+    const double off = rounded_off_um(static_cast<double>(i) / static_cast<double>(count));
+    offset_range_.see(off);
+    if (std::abs(off) > rounded_offset_um_ * 0.499999) {  // half way: it may go to either side
+      offset_range_.see(-off);
+    }
+  }
+}
+
+ErrorModel::Line ErrorModel::line_at(std::int64_t revolution, std::int64_t line) const {
+  const bool reverse = line_is_reverse(plan_, revolution, line);
+  Line result;
+  result.errors = &scanner_[reverse ? 1 : 0];
+  result.reverse = reverse;
+  result.first_slot = reverse ? plan_.line.reverse_first_slot : plan_.line.forward_first_slot;
+  result.first_tick = (revolution * plan_.rotary.lines_per_revolution + line) * plan_.line.ticks +
+                      result.first_slot * plan_.clock.ticks_per_slot;
+  result.shift = shift_at(revolution, line);
+  const std::int64_t column =
+      plan_.carriage
+          ? map_.column_after((revolution - plan_.carriage->layers) * plan_.rotary.lines_per_revolution + line)
+          : revolution / revolutions_per_band(plan_) * plan_.line.pixels;
+  result.first_column_um = static_cast<double>(column) * column_um_;
+  result.offset_um = column_offset_um(revolution, line);
+  result.axis_start = axis_->start_of(revolution);
+  result.axis_drift_um = axis_->drift_um(result.axis_start, result.first_tick);
+  if (carriage_) {
+    result.carriage_start = carriage_->start_of(revolution);
+    result.carriage_drift_um = carriage_->drift_um(result.carriage_start, result.first_tick);
+  }
+  return result;
+}
+
+/// Landing minus target. An axis that leads brings places beyond the target under the beam; a surface that is shifted
+/// takes its target along, and where it rises the beam meets it earlier, nearer to the head.
+inline PulseError ErrorModel::landed(const Line& line, std::int64_t index, const AxisMotion::Phase& axis,
+                                     const AxisMotion::Phase& carriage) const {
+  const LineErrors& errors = *line.errors;
+  const auto i = static_cast<std::size_t>(index);
+  const auto slots = static_cast<double>(index);
+  const double pixel = line.reverse ? static_cast<double>(plan_.line.pixels - 1) - slots : slots;
+  PulseError error;
+  error.across_um = errors.across_um[i] + axis_->off_um(line.axis_start, axis) + line.axis_drift_um +
+                    axis_->drift_um_per_slot() * slots - line.shift.onwards +
+                    line.shift.outwards * errors.slope_across[i];
+  error.along_um = errors.along_um[i] + line.offset_um - growth_ * (line.first_column_um + pixel * column_um_) +
+                   line.shift.outwards * errors.slope_along[i];
+  if (carriage_) {
+    error.along_um += carriage_->off_um(line.carriage_start, carriage) + line.carriage_drift_um +
+                      carriage_->drift_um_per_slot() * slots;
+  }
+  error.defocus_um = errors.defocus_um[i] + line.shift.outwards;
+  return error;
+}
+
+PulseError ErrorModel::pulse_error(std::int64_t revolution, std::int64_t line, std::int64_t pixel) const {
+  const Line here = line_at(revolution, line);
+  const std::int64_t index = here.reverse ? plan_.line.pixels - 1 - pixel : pixel;
+  const std::int64_t tick = here.first_tick + index * plan_.clock.ticks_per_slot;
+  const PulseError error =
+      landed(here, index, axis_->phase_at(tick), carriage_ ? carriage_->phase_at(tick) : AxisMotion::Phase{});
+  return {-error.along_um, -error.across_um, error.defocus_um};
+}
+
+void ErrorModel::simulate(std::int64_t revolution, std::int64_t line, std::span<const std::byte> fired,
+                          PulseSums& sums) const {
+  const Line here = line_at(revolution, line);
+  AxisMotion::Phase axis = axis_->phase_at(here.first_tick);
+  AxisMotion::Phase carriage = carriage_ ? carriage_->phase_at(here.first_tick) : AxisMotion::Phase{};
+  double squares = 0;
+  double worst = -1;
+  std::int64_t worst_index = 0;
+  for (std::int64_t i = 0; i < plan_.line.pixels; ++i) {
+    if (fired.empty() || is_set(fired, i)) {
+      const PulseError error = landed(here, i, axis, carriage);
+      const double square = error.along_um * error.along_um + error.across_um * error.across_um;
+      squares += square;
+      ++sums.pulses;
+      if (square > worst) {
+        worst = square;
+        worst_index = i;
+      }
+    }
+    axis_->advance(axis);
+    if (carriage_) {
+      carriage_->advance(carriage);
+    }
+  }
+  sums.squares_um2 += squares;
+  if (worst > sums.worst_um2) {
+    sums.worst_um2 = worst;
+    sums.worst = {revolution, line, here.first_slot + worst_index};
+  }
+}
+
+ErrorModel::Bound ErrorModel::line_bound(std::int64_t revolution, std::int64_t line) const {
+  const Line here = line_at(revolution, line);
+  const LineErrors& errors = *here.errors;
+  const auto last = static_cast<double>(plan_.line.pixels - 1);
+  const auto moving = [last](const AxisMotion& axis, double drift_um) {
+    return Interval{axis.range().least_um, axis.range().most_um} +
+           between(drift_um, drift_um + axis.drift_um_per_slot() * last);
+  };
+  const Interval across = errors.across + moving(*axis_, here.axis_drift_um) + at(-here.shift.onwards) +
+                          times(errors.slope_across_range, here.shift.outwards);
+  // Columns grow apart from column 0, wherever in the image the line lies.
+  const double farthest_um = static_cast<double>(image_columns(plan_) - 1) * column_um_;
+  Interval along = errors.along + between(0, -growth_ * farthest_um) +
+                   times(errors.slope_along_range, here.shift.outwards) + offset_range_;
+  if (carriage_) {
+    along = along + moving(*carriage_, here.carriage_drift_um);
+  }
+  return {std::hypot(across.magnitude(), along.magnitude()), (errors.defocus + at(here.shift.outwards)).magnitude()};
+}
+
+ErrorModel::JobBound ErrorModel::job_bound() const {
+  const std::int64_t revolutions = plan_.job.revolutions;
+  const std::int64_t lines = plan_.rotary.lines_per_revolution;
+  std::set<std::int64_t> ends = {0, 1, revolutions - 2, revolutions - 1};
+  JobBound worst;
+  const auto see = [&](std::int64_t revolution, std::int64_t line) {
+    const Bound bound = line_bound(revolution, line);
+    if (bound.landing_um > worst.bound.landing_um) {
+      worst.bound.landing_um = bound.landing_um;
+      worst.revolution = revolution;
+      worst.line = line;
+    }
+    worst.bound.defocus_um = std::max(worst.bound.defocus_um, bound.defocus_um);
+  };
+  for (const std::int64_t revolution : ends) {
+    if (revolution < 0 || revolution >= revolutions) {
+      continue;
+    }
+    if (run_out_) {
+      for (std::int64_t line = 0; line < lines; ++line) {
+        see(revolution, line);
+      }
+      continue;
+    }
+    for (const std::int64_t line : std::set<std::int64_t>{0, 1, lines - 2, lines - 1}) {
+      if (line >= 0 && line < lines) {
+        see(revolution, line);
+      }
+    }
+  }
+  return worst;
+}
+
+}  // namespace gravure

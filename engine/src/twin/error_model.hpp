@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "axis_motion.hpp"
+#include "gravure/core/exposure_map.hpp"
+#include "gravure/twin/error_budget.hpp"
+#include "scanner_errors.hpp"
+
+namespace gravure {
+
+/// Target minus landing of a pulse on the surface: along the line (positive to higher pixels), across it (positive the
+/// way the lines follow each other), and the distance of the surface from focus (positive towards the head).
+struct PulseError {
+  double along_um = 0;
+  double across_um = 0;
+  double defocus_um = 0;
+};
+
+/// What simulated pulses come to.
+struct PulseSums {
+  std::int64_t pulses = 0;
+  double squares_um2 = 0;
+  double worst_um2 = -1;
+  PulsePlace worst;
+
+  void merge(const PulseSums& other);
+};
+
+/// Where the light of a plan's pulses lands, with the terms that are switched on.
+class ErrorModel {
+ public:
+  /// `trajectory`: none where no scanner is known. Fails with out_of_range where the A-B registers are none.
+  static Result<ErrorModel> make(const Plan& plan, const scan::LineTrajectory* trajectory, const TwinSettings& twin);
+
+  PulseError pulse_error(std::int64_t revolution, std::int64_t line, std::int64_t pixel) const;
+  /// Every pulse of a line; `fired`: in order of time, MSB first; empty: all of the window.
+  void simulate(std::int64_t revolution, std::int64_t line, std::span<const std::byte> fired, PulseSums& sums) const;
+
+  /// What no pulse of a line exceeds.
+  struct Bound {
+    double landing_um = 0;
+    double defocus_um = 0;
+  };
+  Bound line_bound(std::int64_t revolution, std::int64_t line) const;
+  /// What no pulse of the job exceeds, and where the bound is largest. Beyond run-out, which is the same in every
+  /// revolution, all that changes from line to line grows steadily: the first and the last lines of the first and the
+  /// last two revolutions (one for each direction) bound the others.
+  struct JobBound {
+    Bound bound;
+    std::int64_t revolution = 0;
+    std::int64_t line = 0;
+  };
+  JobBound job_bound() const;
+
+ private:
+  struct Line;
+  struct Shift {  ///< of the surface against where the job has it, in um
+    double outwards = 0;
+    double onwards = 0;  ///< the way the lines follow each other
+  };
+  struct RunOut {
+    double eccentricity_um = 0;
+    double angle_rad = 0;
+  };
+
+  explicit ErrorModel(const Plan& plan) : plan_(plan), map_(plan) {}
+  Shift shift_at(std::int64_t revolution, std::int64_t line) const;
+  double rounded_off_um(double share) const;
+  double column_offset_um(std::int64_t revolution, std::int64_t line) const;
+  void set_offset_range();
+  Line line_at(std::int64_t revolution, std::int64_t line) const;
+  PulseError landed(const Line& line, std::int64_t index, const AxisMotion::Phase& axis,
+                    const AxisMotion::Phase& carriage) const;
+
+  const Plan& plan_;
+  ExposureMap map_;
+  std::optional<AxisMotion> axis_;
+  std::optional<AxisMotion> carriage_;
+  ScannerErrors scanner_;
+  double rounded_offset_um_ = 0;  ///< helical: one count of the scanner, where rounding counts
+  Interval offset_range_;
+  std::optional<RunOut> run_out_;
+  double growth_ = 0;  ///< of every length, by temperature
+  double radius_um_ = 0;
+  double column_um_ = 0;
+  double columns_per_line_ = 0;  ///< helical
+};
+
+}  // namespace gravure

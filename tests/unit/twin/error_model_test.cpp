@@ -1,0 +1,211 @@
+#include "error_model.hpp"
+
+#include <cmath>
+
+#include "axis_check.hpp"
+#include "budget_support.hpp"
+#include "dice.hpp"
+#include "gravure/core/exact.hpp"
+
+namespace gravure::test {
+namespace {
+
+double magnitude(const PulseError& error) {
+  return std::hypot(error.along_um, error.across_um);
+}
+
+TEST(ErrorModel, WithoutCorrectionLinesZigzagByHalfTheWayTheSurfaceMoves) {
+  const Plan plan = plan_of(roller_job(), 3500, 2);
+  const auto off = trajectory_of(plan, roller_head(), {false, true, {}});
+  TwinSettings twin = no_terms();
+  twin.cross_scan = true;
+  const ErrorModel model = model_of(plan, &off, twin);
+  const double slot_s = 82 / 164e6;
+  const double amplitude_um = to_double(plan.rotary.surface_speed_mm_s) * 3499 * slot_s / 2 * 1000;
+  EXPECT_NEAR(amplitude_um, 2.59, 0.01) << "a third of the pitch";
+  EXPECT_NEAR(model.job_bound().bound.landing_um, amplitude_um, 1e-6);
+  // The surface has not come as far as the target at the begin of a line, and is beyond at its end.
+  EXPECT_NEAR(model.pulse_error(0, 0, 0).across_um, amplitude_um, 1e-6);
+  EXPECT_NEAR(model.pulse_error(0, 0, 3499).across_um, -amplitude_um, 1e-6);
+  EXPECT_NEAR(model.pulse_error(0, 1, 0).across_um, -amplitude_um, 1e-6) << "the other way: it ends here";
+  EXPECT_NEAR(model.pulse_error(0, 1, 3499).across_um, amplitude_um, 1e-6);
+  EXPECT_NEAR(model.pulse_error(0, 1, 3499).along_um, 0, 1e-6);
+}
+
+TEST(ErrorModel, WithCorrectionTheScannerIsBelowItsResolution) {
+  const Plan plan = plan_of(roller_job(), 3500, 2);
+  const auto on = trajectory_of(plan, roller_head());
+  const ErrorModel model = model_of(plan, &on, scanner_terms());
+  EXPECT_LT(model.job_bound().bound.landing_um, kRollerCountUm);
+  EXPECT_GT(model.job_bound().bound.landing_um, kRollerCountUm / 4);
+  TwinSettings alone = no_terms();
+  alone.cross_scan = true;
+  EXPECT_LT(model_of(plan, &on, alone).job_bound().bound.landing_um, 1e-6);
+}
+
+TEST(ErrorModel, LagDisplacesOddAgainstEvenLinesByTwiceSpeedTimesLag) {
+  const Plan plan = plan_of(roller_job(), 3500, 2);
+  kinematics::ScanHead head = roller_head();
+  head.lag_us = 3;
+  const auto late = trajectory_of(plan, head, {true, false, {}});
+  TwinSettings twin = no_terms();
+  twin.lag = true;
+  const ErrorModel model = model_of(plan, &late, twin);
+  const double shift_um = 16'000 * 3e-6 * 1000;
+  EXPECT_NEAR(model.pulse_error(0, 0, 1750).along_um, shift_um, 1e-3) << "short of its target";
+  EXPECT_NEAR(model.pulse_error(0, 0, 1750).along_um - model.pulse_error(0, 1, 1750).along_um, 2 * shift_um, 1e-3);
+  const auto early = trajectory_of(plan, head);
+  EXPECT_LT(model_of(plan, &early, twin).job_bound().bound.landing_um, 1e-6) << "compensated: 492 whole ticks";
+}
+
+TEST(ErrorModel, DelayedReversePulsesBelongToTheLagTheyMakeUpFor) {
+  Job job = roller_job();
+  job.scanner.bidirectional_offset_ticks = 12 * 82;  // 6 us
+  const Plan plan = plan_of(job, 3500, 2);
+  kinematics::ScanHead head = roller_head();
+  head.lag_us = 3;
+  const auto late = trajectory_of(plan, head, {true, false, {}});
+  TwinSettings twin = no_terms();
+  twin.lag = true;
+  const ErrorModel model = model_of(plan, &late, twin);
+  EXPECT_NEAR(model.pulse_error(0, 0, 1000).along_um, model.pulse_error(0, 1, 1000).along_um, 1e-3);
+  twin.lag = false;
+  EXPECT_EQ(magnitude(model_of(plan, &late, twin).pulse_error(0, 1, 1000)), 0);
+}
+
+TEST(ErrorModel, AxisIsWhereTheEdgesOfTheRegistersPutIt) {
+  SCOPED_TRACE(Dice::note());
+  Dice dice;
+  int plans = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    Job job = small_job(dice.between(2, 40));
+    job.fpga.fractional = dice.coin();
+    job.fpga.counter_bits = static_cast<int>(dice.between(16, 64));
+    job.rotary.encoder_lines = dice.between(100, 9000);
+    const Result<Plan> made = make_plan(job, dice.between(2, 50), dice.between(1, 20));
+    if (!made) {
+      continue;
+    }
+    ++plans;
+    const Plan& plan = made.value();
+    TwinSettings twin = no_terms();
+    twin.drift = twin.ab_step = true;
+    const ErrorModel model = model_of(plan, nullptr, twin);
+    const AxisCheck check = AxisCheck::make(plan).value();
+    for (int pulse = 0; pulse < 20; ++pulse) {
+      const std::int64_t revolution = dice.between(0, plan.job.revolutions - 1);
+      const std::int64_t line = dice.between(0, plan.rotary.lines_per_revolution - 1);
+      const std::int64_t pixel = dice.between(0, plan.line.pixels - 1);
+      const std::int64_t slot = line_is_reverse(plan, revolution, line)
+                                    ? plan.line.reverse_first_slot + plan.line.pixels - 1 - pixel
+                                    : plan.line.forward_first_slot + pixel;
+      const std::int64_t tick =
+          (revolution * plan.rotary.lines_per_revolution + line) * plan.line.ticks + slot * plan.clock.ticks_per_slot;
+      const Rational ideal =
+          plan.rotary.edges_per_revolution * ratio(tick, plan.line.ticks) / plan.rotary.lines_per_revolution;
+      const Rational leads = Rational(Integer(check.register_edges(tick))) - ideal;
+      const PulseError error = model.pulse_error(revolution, line, pixel);
+      ASSERT_NEAR(error.across_um, -to_double(leads) * check.step_um(), 1e-9 + 1e-9 * check.step_um());
+      ASSERT_EQ(error.along_um, 0);
+    }
+  }
+  EXPECT_GE(plans, 50);
+}
+
+TEST(ErrorModel, DriftAloneIsThatOfThePlanAtTheEndOfTheJob) {
+  Job job = roller_job();
+  job.fpga.fractional = false;
+  const Plan plan = plan_of(job, 3500, 100);
+  TwinSettings twin = no_terms();
+  twin.drift = true;
+  const double um = std::abs(to_double(plan.ab.drift_um_per_revolution)) * 100;
+  EXPECT_GT(um, 0);
+  const double bound = model_of(plan, nullptr, twin).job_bound().bound.landing_um;
+  EXPECT_LE(bound, um);
+  EXPECT_GT(bound, um * (1 - 1e-6)) << "but for the turn after the last pulse";
+}
+
+TEST(ErrorModel, ServoAloneIsItsFollowingErrorOnTheSurface) {
+  const Plan plan = plan_of(roller_job(), 3500, 2);
+  TwinSettings twin = no_terms();
+  twin.servo = {true, 50, ratio(7, 10)};
+  const ErrorModel model = model_of(plan, nullptr, twin);
+  const double um = 2 * 0.7 * to_double(plan.rotary.surface_speed_mm_s) * 1000 / (2 * kPi * 50);
+  EXPECT_NEAR(model.job_bound().bound.landing_um, um, um * 1e-9);
+  EXPECT_NEAR(model.pulse_error(1, 7, 100).across_um, um, um * 1e-9) << "behind: it lands before its target";
+  twin.ab_step = true;
+  const ErrorModel smooth = model_of(plan, nullptr, twin);
+  const double step_um = to_double(Rational(plan.rotary.circumference_um / plan.rotary.edges_per_revolution));
+  EXPECT_NEAR(smooth.pulse_error(1, 7, 100).across_um, um + step_um / 2, step_um * 1e-2)
+      << "the edges themselves are below its bandwidth: half a step remains of them";
+}
+
+TEST(ErrorModel, RunOutMovesPlacesRoundTheWorkpieceAndLiftsThem) {
+  const Plan plan = plan_of(roller_job(), 3500, 2);
+  const auto trajectory = trajectory_of(plan, roller_head());
+  TwinSettings twin = no_terms();
+  twin.run_out = {true, 30, 90};
+  const ErrorModel model = model_of(plan, &trajectory, twin);
+  const double radius_um = to_double(plan.rotary.circumference_um) / (2 * kPi);
+  double turned_um = 0;
+  for (std::int64_t line = 0; line < 27'489; line += 1009) {
+    const double theta = 2 * kPi * static_cast<double>(line) / 27'489 - kPi / 2;
+    // A beam to the axis of rotation meets the workpiece at this angle of its own, beyond the one it should.
+    turned_um = radius_um * std::asin(30 / radius_um * std::sin(theta));
+    const double height_um =
+        30 * std::cos(theta) + std::sqrt(radius_um * radius_um - std::pow(30 * std::sin(theta), 2)) - radius_um;
+    const PulseError error = model.pulse_error(0, line, 1750);
+    ASSERT_NEAR(error.across_um, -turned_um, 2e-3) << line;
+    ASSERT_NEAR(error.defocus_um, height_um, 0.02) << line;
+    ASSERT_NEAR(error.along_um, 0, 1e-9);
+  }
+  EXPECT_NEAR(model.job_bound().bound.landing_um, 30, 2e-3);
+  EXPECT_NEAR(model.job_bound().bound.defocus_um, 30, 0.01);
+}
+
+TEST(ErrorModel, AHigherSurfaceIsMetEarlierUnderSlantingLight) {
+  const Plan plan = plan_of(roller_job(), 3500, 2);
+  const auto trajectory = trajectory_of(plan, roller_head(), {}, 20);
+  TwinSettings twin = no_terms();
+  twin.thermal = {true, 20, ratio(115, 10)};
+  const ErrorModel model = model_of(plan, &trajectory, twin);
+  const double growth_um = to_double(plan.rotary.circumference_um) / (2 * kPi) * 230e-6;
+  // The light falls in from above, 20 degrees off the normal: on a higher surface it lands nearer to the top.
+  EXPECT_NEAR(model.pulse_error(0, 0, 1750).across_um, growth_um * std::tan(kPi / 9), 0.01);
+}
+
+TEST(ErrorModel, TenMicrometresOfDiameterChangeThePitchAndLeaveTheSeamClosed) {
+  const Plan plan = plan_of(roller_job(), 3500, 3);
+  const auto trajectory = trajectory_of(plan, roller_head());
+  TwinSettings twin = no_terms();
+  twin.drift = twin.ab_step = true;
+  const ErrorModel measured = model_of(plan, &trajectory, twin);
+  twin.thermal = {true, 10, ratio(1000, 70)};  // 70 mm * 10 K * 14.29 um/(m K) = 10 um
+  const ErrorModel grown = model_of(plan, &trajectory, twin);
+  const double step_um = to_double(Rational(plan.rotary.circumference_um / plan.rotary.edges_per_revolution));
+  EXPECT_NEAR(grown.pulse_error(0, 0, 0).defocus_um - measured.pulse_error(0, 0, 0).defocus_um, 5, 1e-9);
+  for (const std::int64_t revolution : {0, 1, 2}) {  // angles stay: every line is where it was, round after round
+    EXPECT_NEAR(grown.pulse_error(revolution, 0, 1750).across_um, measured.pulse_error(revolution, 0, 1750).across_um,
+                1e-3);
+    EXPECT_LT(std::abs(grown.pulse_error(revolution, 27'488, 1750).across_um), 1.1 * step_um);
+  }
+  // Along the axis columns grow apart from column 0.
+  EXPECT_NEAR(grown.pulse_error(1, 5, 0).along_um, 0, 1e-9);
+  EXPECT_NEAR(grown.pulse_error(1, 5, 3499).along_um, 3499 * 8 * 10.0 / 70'000, 1e-6);
+}
+
+TEST(ErrorModel, ThermalGrowthOfAPanelStartsAtItsFirstLineWhicheverWayItRuns) {
+  Job job = small_job(50);
+  job.mode = Mode::flat;
+  job.stage = {50, 8, 20, 4, 2'000'000, {}};
+  const Plan plan = plan_of(job, 40, 2);
+  TwinSettings twin = no_terms();
+  twin.thermal = {true, 100, 10};
+  const ErrorModel model = model_of(plan, nullptr, twin);
+  EXPECT_NEAR(model.pulse_error(0, 49, 0).across_um, 49 * 8 * 1e-3, 1e-9);
+  EXPECT_NEAR(model.pulse_error(1, 0, 0).across_um, -49 * 8 * 1e-3, 1e-9) << "the second pass begins at the last line";
+  EXPECT_NEAR(model.pulse_error(1, 49, 0).across_um, 0, 1e-9);
+}
+
+}  // namespace
+}  // namespace gravure::test
