@@ -6,6 +6,7 @@
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/plan_json.hpp"
 #include "job_loader.hpp"
+#include "job_scanner.hpp"
 #include "plan_text.hpp"
 #include "program_files.hpp"
 #include "verb.hpp"
@@ -121,6 +122,9 @@ void add_plan(CLI::App& app, Command& command) {
         Json plan = Json::parse(plan_to_json(loaded.plan));
         plan["line"]["ticks_per_microvector"] =
             loaded.plan.line.slots_per_microvector * loaded.plan.clock.ticks_per_slot;
+        if (plan.contains("scanner")) {
+          plan["scanner"]["trajectory"] = loaded.trajectory ? trajectory_json(*loaded.trajectory) : Json(nullptr);
+        }
         plan["image"] = {{"fires", polarity_name(image.fires)},
                          {"lines_along", image.lines_along == LinesAlong::rows ? "rows" : "columns"},
                          {"order", order_name(image.order)}};
@@ -133,6 +137,9 @@ void add_plan(CLI::App& app, Command& command) {
         print_json(plan);
       } else {
         print(plan_text(loaded.plan));
+        if (loaded.trajectory) {
+          print(trajectory_text(*loaded.trajectory));
+        }
         print(fmt::format("{:<10}{} fires, lines along {}, layers in order \"{}\"\n", "image",
                           polarity_name(image.fires), image.lines_along == LinesAlong::rows ? "rows" : "columns",
                           order_name(image.order)));

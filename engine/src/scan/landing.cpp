@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "set_point_at.hpp"
+
 namespace gravure::scan {
 namespace {
 
@@ -9,16 +11,6 @@ using kinematics::FieldPoint;
 using kinematics::Vector3;
 
 constexpr double kUmPerMm = 1000;
-
-GridPoint position_of(const SetPoint& point, double resolution_mm, bool rounding) noexcept {
-  return rounding ? GridPoint{point.u_count * resolution_mm, point.v_count * resolution_mm}
-                  : GridPoint{point.u_mm, point.v_mm};
-}
-
-GridPoint rounded(const GridPoint& point, double resolution_mm) noexcept {
-  return {std::round(point.u_mm / resolution_mm) * resolution_mm,
-          std::round(point.v_mm / resolution_mm) * resolution_mm};
-}
 
 }  // namespace
 
@@ -32,9 +24,7 @@ FieldPoint mirrors_at(const LineTrajectory& trajectory, Direction direction, dou
   if (!model.microvectors) {
     const double early = static_cast<double>(trajectory.lag_ticks) / static_cast<double>(timing.ticks_per_slot);
     const FieldPoint wanted = trajectory.path.at(direction, followed + early);
-    const GridPoint point = model.rounding ? rounded({wanted.u_mm, wanted.v_mm}, trajectory.resolution_mm)
-                                           : GridPoint{wanted.u_mm, wanted.v_mm};
-    return {point.u_mm, point.v_mm, 0};
+    return model.rounding ? rounded(wanted, trajectory.resolution_mm) : FieldPoint{wanted.u_mm, wanted.v_mm, 0};
   }
   const auto slots = static_cast<double>(timing.slots);
   const double lines = std::floor(followed / slots);
@@ -46,23 +36,14 @@ FieldPoint mirrors_at(const LineTrajectory& trajectory, Direction direction, dou
   const double microvectors = (followed - lines * slots) / static_cast<double>(timing.slots_per_microvector);
   const std::size_t index = std::min(static_cast<std::size_t>(microvectors), points.size() - 1);
   const SetPoint& next = index + 1 < points.size() ? points[index + 1] : trajectory.set_points(turned(here)).front();
-  const GridPoint a = position_of(points[index], trajectory.resolution_mm, model.rounding);
-  const GridPoint b = position_of(next, trajectory.resolution_mm, model.rounding);
-  const double share = microvectors - static_cast<double>(index);
-  GridPoint point{a.u_mm + share * (b.u_mm - a.u_mm), a.v_mm + share * (b.v_mm - a.v_mm)};
-  if (model.rounding && trajectory.options.field_grid) {
-    if (const auto landed = trajectory.options.field_grid->lands_at(point)) {
-      point = landed.value();
-    }
-  }
-  return {point.u_mm, point.v_mm, 0};
+  return between(trajectory, points[index], next, microvectors - static_cast<double>(index), model.rounding);
 }
 
 LandingError landing_error(const LineTrajectory& trajectory, Direction direction, std::int64_t pixel,
                            const LandingModel& model) {
   const LinePath& path = trajectory.path;
   const LineGeometry& geometry = path.geometry();
-  const auto slot = static_cast<double>(path.timing().slot_of_pixel(direction, pixel));
+  const double slot = path.timing().pulse_at(direction, path.timing().slot_of_pixel(direction, pixel));
   const Vector3 target = path.target(static_cast<double>(pixel));
   const Vector3 along = (path.target(static_cast<double>(pixel) + 1) - target).normalized();
   const Vector3& normal = geometry.surface_normal;

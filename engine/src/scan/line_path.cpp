@@ -67,16 +67,25 @@ Result<void> check_speed(const LinePath& path, Direction direction, const LineTi
   return {};
 }
 
-Result<void> check_reach(double least_mm, double most_mm, std::size_t axis, double field_mm) {
-  const double reach = std::max(-least_mm, most_mm);
-  if (reach <= field_mm / 2) {
-    return {};
+/// Every pulse must be inside the field. Turns may swing further: what they take is LinePath::reach_mm().
+Result<void> check_marking_field(const LinePath& path, Direction direction) {
+  const LineTiming& timing = path.timing();
+  const double field_mm = path.geometry().machine.head.field_mm;
+  const double first = static_cast<double>(timing.first_slot(direction));
+  for (const double slot : {first, first + static_cast<double>(timing.pixels - 1)}) {
+    const FieldPoint field = path.on_line(direction, slot);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double from_centre = std::abs(part(field, axis));
+      if (from_centre > field_mm / 2) {  // no number: plan_turn() says so
+        return Error{
+            ErrorCode::out_of_range,
+            fmt::format("scan: while a line is marked {} comes {} mm from the centre: field_mm = {} allows {}; "
+                        "it takes a field of {} mm, fewer pixels or less offset_deg",
+                        axis == 0 ? "U" : "V", from_centre, field_mm, field_mm / 2, 2 * from_centre)};
+      }
+    }
   }
-  return Error{
-      ErrorCode::out_of_range,
-      fmt::format("scan: {} reaches {} mm from the centre, the turn included: field_mm = {} allows {}; it takes "
-                  "a field of {} mm, fewer pixels or a shorter turn",
-                  axis == 0 ? "U" : "V", reach, field_mm, field_mm / 2, 2 * reach)};
+  return {};
 }
 
 }  // namespace
@@ -91,10 +100,11 @@ Direction LinePath::other(Direction direction) const noexcept {
 
 /// Half a slot beyond the first and the last pulse and on to the next set-point, for between set-points the mirrors
 /// move straight. The pulses of reverse lines may be later than the path by the offset; the speed is constant for both.
-LinePath::Window LinePath::window(Direction direction) const noexcept {
+LinePath::Window LinePath::marking(Direction direction) const noexcept {
   const auto last = static_cast<double>(timing_.pixels - 1);
-  const auto pulses = static_cast<double>(timing_.first_slot(direction));
-  const double path = direction == Direction::forward ? pulses : pulses - static_cast<double>(timing_.offset_slots);
+  const double pulses = timing_.pulse_at(direction, timing_.first_slot(direction));
+  const auto first = static_cast<double>(timing_.first_slot(direction));
+  const double path = direction == Direction::forward ? first : first - static_cast<double>(timing_.offset_slots);
   const double begin = std::min(pulses, path);
   const double end = std::max(pulses, path) + last;
   const auto microvector = static_cast<double>(timing_.slots_per_microvector);
@@ -104,7 +114,7 @@ LinePath::Window LinePath::window(Direction direction) const noexcept {
 }
 
 double LinePath::turn_slots(Direction before) const noexcept {
-  return static_cast<double>(timing_.slots) - window(before).end + window(other(before)).begin;
+  return static_cast<double>(timing_.slots) - marking(before).end + marking(other(before)).begin;
 }
 
 bool LinePath::is_long_enough(Direction before) const noexcept {
@@ -181,17 +191,17 @@ FieldPoint LinePath::at(Direction direction, double slot) const {
   const double lines = std::floor(slot / slots);
   const double within = slot - lines * slots;
   const Direction here = std::fmod(lines, 2) == 0 ? direction : other(direction);
-  const Window marks = window(here);
+  const Window marks = marking(here);
   if (within < marks.begin) {
-    return in_turn(other(here), slots - window(other(here)).end + within);
+    return in_turn(other(here), slots - marking(other(here)).end + within);
   }
   return within > marks.end ? in_turn(here, within - marks.end) : on_line(here, within);
 }
 
 Result<void> LinePath::plan_turn(Direction before) {
   const Direction after = other(before);
-  const double begin = window(before).end;
-  const double end = window(after).begin;
+  const double begin = marking(before).end;
+  const double end = marking(after).begin;
   const double slots = turn_slots(before);
   const MirrorLimits limits = limits_of(geometry_.machine.head);
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -221,9 +231,18 @@ Result<void> LinePath::check_turn(Direction before) const {
               std::max(1.0, std::ceil(turn.shortest_s / timing_.slot_s())), turn.start_mm_s, turn.end_mm_s,
               text_of(limits_of(geometry_.machine.head)), enough_turn_slots())};
     }
-    GRAVURE_CHECK(check_reach(turn.least_mm, turn.most_mm, axis, geometry_.machine.head.field_mm));
   }
   return {};
+}
+
+double LinePath::reach_mm() const noexcept {
+  double reach = 0;
+  for (const Direction before : {Direction::forward, other(Direction::forward)}) {
+    for (const MirrorTurn& turn : turn_after(before)) {
+      reach = std::max({reach, -turn.least_mm, turn.most_mm});
+    }
+  }
+  return reach;
 }
 
 Result<LinePath> LinePath::plan(const LineTiming& timing, const LineGeometry& geometry, bool cross_scan_correction,
@@ -231,6 +250,8 @@ Result<LinePath> LinePath::plan(const LineTiming& timing, const LineGeometry& ge
   LinePath path(timing, geometry, cross_scan_correction, lead_ticks);
   GRAVURE_CHECK(check_speed(path, Direction::forward, timing));
   const Direction back = path.other(Direction::forward);  // forward again where all lines run forward
+  GRAVURE_CHECK(check_marking_field(path, Direction::forward));
+  GRAVURE_CHECK(check_marking_field(path, back));
   GRAVURE_CHECK(path.plan_turn(Direction::forward));
   GRAVURE_CHECK(path.plan_turn(back));
   GRAVURE_CHECK(path.check_turn(Direction::forward));

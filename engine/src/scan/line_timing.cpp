@@ -20,9 +20,16 @@ Result<void> check_range(const char* field, std::int64_t value, std::int64_t low
 
 LineTiming line_timing(const Plan& plan) noexcept {
   const LinePlan& line = plan.line;
-  return {
-      plan.clock.fpga_hz,      plan.clock.ticks_per_slot, line.slots,        line.slots_per_microvector, line.pixels,
-      line.forward_first_slot, line.reverse_first_slot,   line.offset_slots, line.bidirectional};
+  return {plan.clock.fpga_hz,
+          plan.clock.ticks_per_slot,
+          line.slots,
+          line.slots_per_microvector,
+          line.pixels,
+          line.forward_first_slot,
+          line.reverse_first_slot,
+          line.offset_slots,
+          line.bidirectional,
+          line.offset_remainder_ticks};
 }
 
 Result<void> check_timing(const LineTiming& timing) {

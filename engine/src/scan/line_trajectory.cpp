@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gravure/scan/landing.hpp"
+#include "set_point_at.hpp"
 
 namespace gravure::scan {
 namespace {
@@ -16,41 +17,14 @@ using kinematics::ScanHead;
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr double kUmPerMm = 1000;
 
-Result<std::int32_t> count_of(double position_mm, const char* axis, const ScanHead& head, double resolution_mm) {
-  const double count = std::round(position_mm / resolution_mm);
-  const double half = std::ldexp(1.0, head.resolution_bits - 1);
-  if (!(count >= -half && count <= half - 1)) {
-    return Error{
-        ErrorCode::out_of_range,
-        fmt::format("scan: set-point {} = {} mm, field correction included: beyond the scanner's range of {} to "
-                    "{} mm; take a larger field_mm or fewer pixels",
-                    axis, position_mm, -half * resolution_mm, (half - 1) * resolution_mm)};
-  }
-  return static_cast<std::int32_t>(count);
-}
-
-Result<SetPoint> set_point_at(const LineTrajectory& trajectory, Direction direction, double slot) {
-  const FieldPoint wanted = trajectory.path.at(direction, slot);
-  GridPoint order{wanted.u_mm, wanted.v_mm};
-  if (trajectory.options.field_grid) {
-    GRAVURE_TRY(order, trajectory.options.field_grid->command_for(order));
-  }
-  SetPoint point{wanted.u_mm, wanted.v_mm, 0, 0};
-  const ScanHead& head = trajectory.path.geometry().machine.head;
-  GRAVURE_TRY(point.u_count, count_of(order.u_mm, "U", head, trajectory.resolution_mm));
-  GRAVURE_TRY(point.v_count, count_of(order.v_mm, "V", head, trajectory.resolution_mm));
-  return point;
-}
-
 Result<std::vector<SetPoint>> set_points(const LineTrajectory& trajectory, Direction direction) {
   const LineTiming& timing = trajectory.path.timing();
   const std::int64_t count = timing.slots / timing.slots_per_microvector;
   std::vector<SetPoint> points;
   points.reserve(static_cast<std::size_t>(count));
   for (std::int64_t k = 0; k < count; ++k) {
-    const std::int64_t tick = k * timing.slots_per_microvector * timing.ticks_per_slot + trajectory.lag_ticks;
-    const double slot = static_cast<double>(tick) / static_cast<double>(timing.ticks_per_slot);
-    GRAVURE_TRY(const SetPoint point, set_point_at(trajectory, direction, slot));
+    GRAVURE_TRY(const SetPoint point,
+                set_point_at(trajectory, direction, set_point_slot(timing, trajectory.lag_ticks, k), 0));
     points.push_back(point);
   }
   return points;
@@ -103,15 +77,31 @@ void measure(const LineTrajectory& trajectory, Direction direction, LineQuality&
   }
 }
 
+/// One warning for all limits that are absent, so that jobs of before say it once.
 void warn_of_absent_limits(const ScanHead& head, std::vector<std::string>& warnings) {
-  const auto warn = [&warnings](const char* field, const std::optional<double>& limit) {
-    if (!limit) {
-      warnings.push_back(fmt::format("scanner.{} is absent: the turn is not checked against it", field));
-    }
+  std::string absent;
+  const auto note = [&absent](const char* field, const std::optional<double>& limit) {
+    absent += limit ? "" : (absent.empty() ? "scanner." : ", ") + std::string(field);
   };
-  warn("max_speed_mm_s", head.max_speed_mm_s);
-  warn("max_acceleration_mm_s2", head.max_acceleration_mm_s2);
-  warn("max_jerk_mm_s3", head.max_jerk_mm_s3);
+  note("max_speed_mm_s", head.max_speed_mm_s);
+  note("max_acceleration_mm_s2", head.max_acceleration_mm_s2);
+  note("max_jerk_mm_s3", head.max_jerk_mm_s3);
+  if (!absent.empty()) {
+    warnings.push_back(absent + ": absent, so lines and turns are not checked against " +
+                       (absent.find(',') == std::string::npos ? "it" : "them"));
+  }
+}
+
+void warn_of_reach(const LinePath& path, std::vector<std::string>& warnings) {
+  const double field_mm = path.geometry().machine.head.field_mm;
+  const double reach_mm = path.reach_mm();
+  if (reach_mm > field_mm / 2) {
+    warnings.push_back(fmt::format(
+        "the turn swings to {:.6g} mm from the centre, beyond the {:.6g} mm of scanner.field_mm = {:.6g}: the scanner "
+        "must "
+        "reach that far beyond what it marks (a field of {:.6g} mm would hold it); frames for export cannot carry it",
+        reach_mm, field_mm / 2, field_mm, 2 * reach_mm));
+  }
 }
 
 /// Joints run at constant speed while lines are marked.
@@ -171,6 +161,7 @@ Result<LineTrajectory> make_line_trajectory(const LineTiming& timing, const Line
   if (options.field_grid) {
     trajectory.field_grid_error_um = options.field_grid->interpolation_error_um();
   }
+  warn_of_reach(trajectory.path, trajectory.warnings);
   warn_of_absent_limits(head, trajectory.warnings);
   return trajectory;
 }

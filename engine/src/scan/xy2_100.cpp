@@ -103,7 +103,10 @@ Result<std::int32_t> decode_frame(FrameForm form, std::uint32_t word) {
 }
 
 Result<std::vector<FramePosition>> frames_of(const LineTrajectory& trajectory, Direction direction, FrameForm form) {
-  const int bits = trajectory.path.geometry().machine.head.resolution_bits;
+  return frames_of(trajectory.set_points(direction), trajectory.path.geometry().machine.head.resolution_bits, form);
+}
+
+Result<std::vector<FramePosition>> frames_of(const std::vector<SetPoint>& points, int bits, FrameForm form) {
   if (bits > position_bits(form)) {
     return Error{
         ErrorCode::out_of_range,
@@ -112,9 +115,17 @@ Result<std::vector<FramePosition>> frames_of(const LineTrajectory& trajectory, D
                     bits, position_bits(form), position_bits(form))};
   }
   const std::int32_t factor = std::int32_t{1} << static_cast<unsigned>(position_bits(form) - bits);
+  const std::int32_t half = std::int32_t{1} << static_cast<unsigned>(bits - 1);
+  const auto is_inside = [half](std::int32_t count) { return count >= -half && count < half; };
   std::vector<FramePosition> frames;
-  frames.reserve(trajectory.set_points(direction).size());
-  for (const SetPoint& point : trajectory.set_points(direction)) {
+  frames.reserve(points.size());
+  for (const SetPoint& point : points) {
+    if (!is_inside(point.u_count) || !is_inside(point.v_count)) {
+      return Error{ErrorCode::out_of_range,
+                   fmt::format("scan: set-point {} at U = {}, V = {} counts: frames carry {} to {}, the field of "
+                               "scanner.field_mm; take a shorter turn, a larger field or fewer pixels",
+                               frames.size(), point.u_count, point.v_count, -half, half - 1)};
+    }
     frames.push_back({point.u_count * factor, point.v_count * factor});
   }
   return frames;

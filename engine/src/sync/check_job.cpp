@@ -3,6 +3,8 @@
 #include <limits>
 #include <string>
 
+#include "gravure/core/plan.hpp"
+
 namespace gravure::sync_plan {
 namespace {
 
@@ -13,6 +15,10 @@ constexpr std::int64_t kMostMicrometres = 1'000'000'000;
 constexpr int kLeastCounterBits = 8;
 constexpr int kMostCounterBits = 64;
 constexpr int kMostInterpolationBits = 32;
+constexpr int kLeastScannerBits = 8;
+constexpr int kMostScannerBits = 26;
+constexpr int kMostOffsetDeg = 85;
+constexpr int kMostTiltDegPerMm = 10;
 
 void check_clocks(const Job& job, Violations& violations) {
   violations.check_range("laser.seed_hz", job.laser.seed_hz, 1, kMostHz);
@@ -30,6 +36,33 @@ void check_scanner(const ScannerSettings& scanner, Violations& violations) {
   violations.check_range("scanner.max_extra_slots", scanner.max_extra_slots, 0, kMostExtraSlots);
   if (scanner.field_mm) {
     violations.check_positive("scanner.field_mm", *scanner.field_mm, kMostMillimetres);
+  }
+  violations.check_range("scanner.resolution_bits", scanner.resolution_bits, kLeastScannerBits, kMostScannerBits);
+  violations.check_range("scanner.lag_us", scanner.lag_us, 0, kMostMillimetres);
+  violations.check_range("scanner.offset_deg", scanner.offset_deg, -kMostOffsetDeg, kMostOffsetDeg);
+  violations.check_range("scanner.tilt_deg_per_mm", scanner.tilt_deg_per_mm, 0, kMostTiltDegPerMm);
+  const auto limit = [&violations](std::string_view key, const std::optional<Rational>& value, const Rational& most) {
+    if (value) {
+      violations.check_positive(key, *value, most);
+    }
+  };
+  limit("scanner.max_speed_mm_s", scanner.max_speed_mm_s, Rational(Integer(1'000'000'000)));
+  limit("scanner.max_acceleration_mm_s2", scanner.max_acceleration_mm_s2, Rational(Integer(1'000'000'000'000)));
+  limit("scanner.max_jerk_mm_s3", scanner.max_jerk_mm_s3, Rational(Integer(1'000'000'000'000'000'000)));
+}
+
+/// What one setting of the scanner may be depends on more than itself.
+void check_scanner_together(const Job& job, Violations& violations) {
+  if (job.mode == Mode::flat && job.scanner.offset_deg != 0) {
+    violations.conflict(ErrorCode::bad_argument, "scanner.offset_deg", number_text(job.scanner.offset_deg),
+                        "lines of a flat job lie on no circumference; take the key out");
+  }
+  if (job.scanner.field_grid_text.size() > kMostPlanGridBytes) {
+    violations.conflict(ErrorCode::out_of_range, "scanner.field_grid",
+                        job.scanner.field_grid ? "\"" + *job.scanner.field_grid + "\"" : "(text)",
+                        "the grid takes " + std::to_string(job.scanner.field_grid_text.size()) +
+                            " bytes; a program carries at most " + std::to_string(kMostPlanGridBytes) +
+                            ": fewer nodes will do");
   }
 }
 
@@ -103,6 +136,7 @@ void check_axis(const RotarySettings& rotary, Violations& violations) {
 void check_fields(const Job& job, std::int64_t columns, std::int64_t exposures, Violations& violations) {
   check_clocks(job, violations);
   check_scanner(job.scanner, violations);
+  check_scanner_together(job, violations);
   if (job.mode == Mode::flat) {
     check_stage(job.stage, violations);
   } else {

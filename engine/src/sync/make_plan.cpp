@@ -99,6 +99,17 @@ void plan_stage(const StageSettings& settings, RotaryPlan& rotary, const Violati
   }
 }
 
+/// What the job says of the scanner, once it says how large the field is.
+std::optional<ScannerPlan> plan_scanner(const ScannerSettings& scanner) {
+  if (!scanner.field_mm) {
+    return std::nullopt;
+  }
+  return ScannerPlan{*scanner.field_mm,       scanner.resolution_bits,       scanner.lag_us,
+                     scanner.compensate_lag,  scanner.max_speed_mm_s,        scanner.max_acceleration_mm_s2,
+                     scanner.max_jerk_mm_s3,  scanner.cross_scan_correction, scanner.offset_deg,
+                     scanner.tilt_deg_per_mm, scanner.field_grid_text};
+}
+
 /// The key that says how many lines a revolution has, and its value.
 std::pair<std::string_view, std::string> lines_key(const Job& job) {
   if (job.mode == Mode::flat) {
@@ -229,6 +240,7 @@ Result<Plan> make_plan(const Job& job, std::int64_t columns, std::int64_t exposu
   if (plan.carriage) {
     plan.carriage->ab = ab_plan(job, plan, axes.back(), solutions.back());
   }
+  plan.scanner = plan_scanner(job.scanner);
   plan.warnings = plan_warnings(job, plan);
   return plan;
 }

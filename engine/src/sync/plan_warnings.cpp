@@ -75,6 +75,31 @@ void warn_carriage(const Plan& plan, std::vector<std::string>& warnings) {
   }
 }
 
+/// Keys of a scanner that is not described.
+void warn_scanner(const ScannerSettings& scanner, std::vector<std::string>& warnings) {
+  if (scanner.field_mm) {
+    return;
+  }
+  std::string keys;
+  const auto name = [&keys](const char* key, bool is_given) {
+    keys += is_given ? (keys.empty() ? "scanner." : ", ") + std::string(key) : "";
+  };
+  const ScannerSettings plain;
+  name("resolution_bits", scanner.resolution_bits != plain.resolution_bits);
+  name("lag_us", scanner.lag_us != plain.lag_us);
+  name("compensate_lag", scanner.compensate_lag != plain.compensate_lag);
+  name("max_speed_mm_s", scanner.max_speed_mm_s.has_value());
+  name("max_acceleration_mm_s2", scanner.max_acceleration_mm_s2.has_value());
+  name("max_jerk_mm_s3", scanner.max_jerk_mm_s3.has_value());
+  name("cross_scan_correction", scanner.cross_scan_correction != plain.cross_scan_correction);
+  name("offset_deg", scanner.offset_deg != plain.offset_deg);
+  name("tilt_deg_per_mm", scanner.tilt_deg_per_mm != plain.tilt_deg_per_mm);
+  name("field_grid", scanner.field_grid.has_value());
+  if (!keys.empty()) {
+    warnings.push_back(keys + ": without effect, for scanner.field_mm is absent and with it the scanner");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> plan_warnings(const Job& job, const Plan& plan) {
@@ -84,6 +109,7 @@ std::vector<std::string> plan_warnings(const Job& job, const Plan& plan) {
   warn_pitch(job, plan, warnings);
   warn_directions(job, plan, warnings);
   warn_encoder(plan, warnings);
+  warn_scanner(job.scanner, warnings);
   if (plan.carriage) {
     warn_carriage(plan, warnings);
   }

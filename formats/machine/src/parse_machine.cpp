@@ -295,10 +295,22 @@ class Reader {
   Violations violations_;
 };
 
+std::map<std::string, Rational, std::less<>> numbers_of(const Document& document) {
+  std::map<std::string, Rational, std::less<>> numbers;
+  for (const Section& section : document.sections) {
+    for (const Entry& entry : section.entries) {
+      if (is_number(entry.value)) {
+        numbers.emplace(section.name + "." + entry.key, entry.value.number);
+      }
+    }
+  }
+  return numbers;
+}
+
 }  // namespace
 }  // namespace machine_file
 
-Result<kinematics::Machine> parse_machine(std::string_view text, const std::string& path) {
+Result<MachineFile> parse_machine_file(std::string_view text, const std::string& path) {
   using namespace machine_file;
   if (text.size() > kMaxMachineBytes) {
     return Error{ErrorCode::bad_file, path + ": " + std::to_string(text.size()) +
@@ -318,12 +330,22 @@ Result<kinematics::Machine> parse_machine(std::string_view text, const std::stri
   if (const auto checked = kinematics::check_machine(machine); !checked) {
     return Error{checked.error().code, place(path, document.find("head")->at) + checked.error().message};
   }
-  return machine;
+  return MachineFile{std::move(machine), numbers_of(document)};
+}
+
+Result<kinematics::Machine> parse_machine(std::string_view text, const std::string& path) {
+  GRAVURE_TRY(MachineFile file, parse_machine_file(text, path));
+  return std::move(file.machine);
+}
+
+Result<MachineFile> read_machine_file(const std::string& path) {
+  GRAVURE_TRY(const std::string text, read_file(path, kMaxMachineBytes));
+  return parse_machine_file(text, path);
 }
 
 Result<kinematics::Machine> read_machine(const std::string& path) {
-  GRAVURE_TRY(const std::string text, read_file(path, kMaxMachineBytes));
-  return parse_machine(text, path);
+  GRAVURE_TRY(MachineFile file, read_machine_file(path));
+  return std::move(file.machine);
 }
 
 }  // namespace gravure

@@ -154,6 +154,29 @@ void check_bands(const Plan& plan, Complaint& complaint) {
   complaint.equal("job.revolutions", plan.job.revolutions, Integer(bands.count) * bands.revolutions_per_band);
 }
 
+void check_scanner(const Plan& plan, Complaint& complaint) {
+  const ScannerPlan& scanner = *plan.scanner;
+  complaint.positive("scanner.field_mm", scanner.field_mm);
+  complaint.unless(Rational(plan.line.pixels) * plan.line.pixel_pitch_um <= scanner.field_mm * Rational(1000),
+                   "scanner.field_mm", "does not hold the pixels of a line");
+  complaint.unless(scanner.resolution_bits >= 8 && scanner.resolution_bits <= 26, "scanner.resolution_bits",
+                   "must be 8 to 26");
+  complaint.unless(scanner.lag_us >= 0, "scanner.lag_us", "must be 0 or more");
+  complaint.unless(scanner.tilt_deg_per_mm >= 0, "scanner.tilt_deg_per_mm", "must be 0 or more");
+  complaint.unless(abs(scanner.offset_deg) <= Rational(plan.mode == Mode::flat ? 0 : 85), "scanner.offset_deg",
+                   "must be -85 to 85, 0 in flat mode");
+  const auto limit = [&complaint](const char* key, const std::optional<Rational>& value) {
+    if (value) {
+      complaint.positive(key, *value);
+    }
+  };
+  limit("scanner.max_speed_mm_s", scanner.max_speed_mm_s);
+  limit("scanner.max_acceleration_mm_s2", scanner.max_acceleration_mm_s2);
+  limit("scanner.max_jerk_mm_s3", scanner.max_jerk_mm_s3);
+  complaint.unless(scanner.field_grid.size() <= kMostPlanGridBytes, "scanner.field_grid",
+                   "has more than " + std::to_string(kMostPlanGridBytes) + " bytes");
+}
+
 /// What a channel is held against: its place in the plan, and what its axis does in a revolution.
 struct Channel {
   const AbPlan& ab;
@@ -234,6 +257,9 @@ Result<void> check_plan(const Plan& plan) {
   }
   if (plan.bands) {
     part([&] { check_bands(plan, complaint); });
+  }
+  if (plan.scanner) {
+    part([&] { check_scanner(plan, complaint); });
   }
   const auto channel = [&](const Channel& its) {
     part([&] { check_frequencies(plan, its, complaint); });

@@ -108,6 +108,21 @@ void describe_bands(Archive& archive, P& bands) {
 }
 
 template <class Archive, class P>
+void describe_scanner(Archive& archive, P& scanner) {
+  archive.field("field_mm", scanner.field_mm);
+  archive.field("resolution_bits", scanner.resolution_bits);
+  archive.field("lag_us", scanner.lag_us);
+  archive.field("compensate_lag", scanner.compensate_lag);
+  archive.field("max_speed_mm_s", scanner.max_speed_mm_s);
+  archive.field("max_acceleration_mm_s2", scanner.max_acceleration_mm_s2);
+  archive.field("max_jerk_mm_s3", scanner.max_jerk_mm_s3);
+  archive.field("cross_scan_correction", scanner.cross_scan_correction);
+  archive.field("offset_deg", scanner.offset_deg);
+  archive.field("tilt_deg_per_mm", scanner.tilt_deg_per_mm);
+  archive.field("field_grid", scanner.field_grid);
+}
+
+template <class Archive, class P>
 void describe_job(Archive& archive, P& job) {
   archive.field("revolutions", job.revolutions);
   archive.field("ticks", job.ticks);
@@ -128,6 +143,7 @@ void describe_plan(Archive& archive, P& plan) {
   archive.section("ab", [&] { describe_ab(archive, plan.ab); });
   archive.optional_section("carriage", plan.carriage, [&](auto& carriage) { describe_carriage(archive, carriage); });
   archive.optional_section("bands", plan.bands, [&](auto& bands) { describe_bands(archive, bands); });
+  archive.optional_section("scanner", plan.scanner, [&](auto& scanner) { describe_scanner(archive, scanner); });
   archive.section("job", [&] { describe_job(archive, plan.job); });
   archive.field("warnings", plan.warnings);
 }

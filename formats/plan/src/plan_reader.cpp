@@ -182,4 +182,12 @@ void PlanReader::field(const char* key, Rational& value) {
   }
 }
 
+void PlanReader::field(const char* key, std::optional<Rational>& value) {
+  const Json* json = find(key);
+  value.reset();
+  if (json != nullptr && !json->is_null()) {
+    field(key, value.emplace());
+  }
+}
+
 }  // namespace gravure::plan_json

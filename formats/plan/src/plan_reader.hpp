@@ -28,6 +28,7 @@ class PlanReader {
   void field(const char* key, Integer& value);
   void field(const char* key, std::optional<Integer>& value);
   void field(const char* key, Rational& value);
+  void field(const char* key, std::optional<Rational>& value);
   void exact_field(const char* key, Rational& value);
 
   template <class Describe>

@@ -21,6 +21,14 @@ void PlanWriter::field(const char* key, const Rational& value) {
   stack_.back().ratios[key] = parts(value);
 }
 
+void PlanWriter::field(const char* key, const std::optional<Rational>& value) {
+  if (value) {
+    field(key, *value);
+  } else {
+    here()[key] = nullptr;
+  }
+}
+
 PlanWriter::Json PlanWriter::whole(const Integer& value) {
   return abs(value) <= kLargestJsonInteger ? Json(static_cast<std::int64_t>(value)) : Json(to_string(value));
 }

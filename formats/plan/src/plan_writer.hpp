@@ -24,6 +24,7 @@ class PlanWriter {
   void field(const char* key, const Integer& value) { here()[key] = whole(value); }
   void field(const char* key, const std::optional<Integer>& value);
   void field(const char* key, const Rational& value);
+  void field(const char* key, const std::optional<Rational>& value);
   void exact_field(const char* key, const Rational& value) { here()[key] = parts(value); }
 
   template <class Describe>

@@ -24,6 +24,19 @@ std::string document() {
   return text.str();
 }
 
+TEST(MachineFile, GivesItsNumbersExactlyByTheirPlaces) {
+  const auto read = parse_machine_file(test::sample_machine(), "m.toml");
+  ASSERT_TRUE(read) << read.error().message;
+  const auto& numbers = read.value().numbers;
+  EXPECT_EQ(numbers.at("x.max_acceleration_mm_s2"), 2000);
+  EXPECT_EQ(numbers.at("x.most_mm"), ratio(50'525, 100));
+  EXPECT_EQ(numbers.at("c.most_deg"), 36'000);
+  EXPECT_EQ(numbers.at("head.tilt_deg_per_mm"), ratio(36, 100));
+  EXPECT_EQ(numbers.at("head.resolution_bits"), 18);
+  EXPECT_EQ(numbers.count("x.axis") + numbers.count("head.lens"), 0U);
+  EXPECT_EQ(numbers.size(), 17U);
+}
+
 TEST(MachineFile, EveryKeyArrivesWhereItBelongs) {
   const auto read = parse_machine(test::sample_machine(), "m.toml");
   ASSERT_TRUE(read) << read.error().message;

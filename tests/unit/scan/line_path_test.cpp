@@ -202,8 +202,10 @@ TEST(LinePath, RefusesWhatTheScannerCannotDo) {
   slow.max_speed_mm_s = 15'999;
   EXPECT_NE(refusal(slow).find("max_speed_mm_s = 15999"), std::string::npos) << refusal(slow);
   kinematics::ScanHead small = roller_head();
-  small.field_mm = 30;  // enough for the window, not for the turn
-  EXPECT_NE(refusal(small).find("field_mm = 30"), std::string::npos) << refusal(small);
+  small.field_mm = 27.99;  // the outermost pulses are 27.992 mm apart
+  EXPECT_NE(refusal(small).find("field_mm = 27.99"), std::string::npos) << refusal(small);
+  small.field_mm = 28;  // enough for the window, not for the turn
+  EXPECT_EQ(refusal(small), "");
   EXPECT_EQ(refusal(roller_head()), "");
 }
 

@@ -124,6 +124,20 @@ void expect_equal(const CarriagePlan& a, const CarriagePlan& b) {
   expect_equal(a.ab, b.ab);
 }
 
+void expect_equal(const ScannerPlan& a, const ScannerPlan& b) {
+  EXPECT_EQ(a.field_mm, b.field_mm);
+  EXPECT_EQ(a.resolution_bits, b.resolution_bits);
+  EXPECT_EQ(a.lag_us, b.lag_us);
+  EXPECT_EQ(a.compensate_lag, b.compensate_lag);
+  EXPECT_EQ(a.max_speed_mm_s, b.max_speed_mm_s);
+  EXPECT_EQ(a.max_acceleration_mm_s2, b.max_acceleration_mm_s2);
+  EXPECT_EQ(a.max_jerk_mm_s3, b.max_jerk_mm_s3);
+  EXPECT_EQ(a.cross_scan_correction, b.cross_scan_correction);
+  EXPECT_EQ(a.offset_deg, b.offset_deg);
+  EXPECT_EQ(a.tilt_deg_per_mm, b.tilt_deg_per_mm);
+  EXPECT_EQ(a.field_grid, b.field_grid);
+}
+
 void expect_equal(const Plan& a, const Plan& b) {
   EXPECT_EQ(a.title, b.title);
   EXPECT_EQ(a.mode, b.mode);
@@ -171,6 +185,10 @@ void expect_equal(const Plan& a, const Plan& b) {
   EXPECT_EQ(a.job.ticks, b.job.ticks);
   EXPECT_EQ(a.job.duration_s, b.job.duration_s);
   EXPECT_EQ(a.warnings, b.warnings);
+  ASSERT_EQ(a.scanner.has_value(), b.scanner.has_value());
+  if (a.scanner) {
+    expect_equal(*a.scanner, *b.scanner);
+  }
 }
 
 TEST(PlanJson, ReadsBackEveryField) {
@@ -210,6 +228,19 @@ TEST(PlanJson, ReadsBackRandomPlansOfAnySize) {
                  {}};
     if (random.chance(2) && job.mode != Mode::helical) {
       job.scanner.field_mm = ratio(random.count(1, 100'000), 1009);
+    }
+    job.scanner.resolution_bits = static_cast<int>(random.between(8, 26));
+    job.scanner.lag_us = ratio(random.count(0, 100'000), 1009);
+    job.scanner.compensate_lag = random.chance(2);
+    job.scanner.cross_scan_correction = random.chance(2);
+    job.scanner.tilt_deg_per_mm = ratio(random.count(0, 1009), 1009);
+    job.scanner.field_grid_text = random.chance(2) ? "gravure-field-grid 1\n\"\t" : "";
+    if (random.chance(2)) {
+      job.scanner.max_speed_mm_s = ratio(random.count(1, 100'000), 1009);
+      job.scanner.max_jerk_mm_s3 = random.count(1, 1'000'000'000'000'000'000);
+    }
+    if (job.mode != Mode::flat) {
+      job.scanner.offset_deg = ratio(random.count(0, 170) - 85, 7);
     }
     const std::int64_t exposures = job.mode == Mode::helical ? job.carriage.layers : random.count(1, 1000);
     const Result<Plan> plan = make_plan(job, random.count(1, 5000), exposures);
@@ -258,6 +289,35 @@ TEST(PlanJson, HasTheSectionsOfItsMode) {
   expect_first_keys(flat["bands"], {"count", "columns", "revolutions_per_band"});
   EXPECT_EQ(flat["bands"]["count"], 2);
   EXPECT_FALSE(roller_json().contains("bands") || roller_json().contains("carriage"));
+  expect_first_keys(flat["scanner"], {"field_mm", "resolution_bits", "lag_us", "compensate_lag", "max_speed_mm_s"});
+  EXPECT_TRUE(flat["scanner"]["max_speed_mm_s"].is_null());
+  EXPECT_FALSE(roller_json().contains("scanner"));
+}
+
+TEST(PlanJson, RefusesScannersThatCannotBe) {
+  Job job = roller_job();
+  job.scanner.field_mm = 30;
+  const ordered_json good = ordered_json::parse(plan_to_json(planned(job, 3500, 2)));
+  const auto refusal = [&good](const std::string& key, const ordered_json& value) {
+    ordered_json json = good;
+    json["scanner"][key] = value;
+    if (value.is_number()) {
+      json["scanner"]["ratios"][key] = {{"num", value}, {"den", 1}};
+    }
+    const Result<Plan> plan = plan_from_json(json.dump());
+    return plan ? std::string() : plan.error().message;
+  };
+  EXPECT_EQ(refusal("lag_us", 3), "");
+  EXPECT_EQ(refusal("field_mm", 27), "plan: scanner.field_mm does not hold the pixels of a line");
+  EXPECT_EQ(refusal("field_mm", 0).rfind("plan: scanner.field_mm", 0), 0U);
+  EXPECT_EQ(refusal("resolution_bits", 27), "plan: scanner.resolution_bits must be 8 to 26");
+  EXPECT_EQ(refusal("lag_us", -1), "plan: scanner.lag_us must be 0 or more");
+  EXPECT_EQ(refusal("offset_deg", 86), "plan: scanner.offset_deg must be -85 to 85, 0 in flat mode");
+  EXPECT_EQ(refusal("tilt_deg_per_mm", -1), "plan: scanner.tilt_deg_per_mm must be 0 or more");
+  EXPECT_EQ(refusal("max_jerk_mm_s3", 0), "plan: scanner.max_jerk_mm_s3 = 0: must be greater than 0");
+  EXPECT_EQ(refusal("field_grid", std::string(kMostPlanGridBytes + 1, '1')),
+            "plan: scanner.field_grid has more than 524288 bytes");
+  EXPECT_EQ(refusal("max_speed_mm_s", "fast").rfind("plan: scanner.", 0), 0U);
 }
 
 TEST(PlanJson, RefusesCarriagesAndBandsThatContradictThePlan) {

@@ -50,6 +50,7 @@ struct ScannerSettings {
   Rational offset_deg = 0;                ///< where round the circumference the lines lie, 0 at the top
   Rational tilt_deg_per_mm = 0;           ///< f-theta lens: tilt of the beam a mm of distance from the centre
   std::optional<std::string> field_grid;  ///< file of the scanner's distortion, relative to the job file
+  std::string field_grid_text;            ///< what that file says; filled in by whoever reads it
 };
 
 /// The machine file that describes scan head and joints where the job leaves them out.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -106,6 +107,25 @@ struct BandsPlan {
   std::int64_t revolutions_per_band = 0;
 };
 
+/// The scanner as the job or its machine file describes it: what is needed, with the rest of the plan, to say where
+/// both mirrors stand on every tick and what the light does (scan: plan_trajectory()).
+struct ScannerPlan {
+  Rational field_mm = 0;     ///< side of the square field; the marking windows lie in it
+  int resolution_bits = 20;  ///< set-points are integers of so many bits over the field
+  Rational lag_us = 0;       ///< the mirrors follow their set-points so much later
+  bool compensate_lag = true;
+  std::optional<Rational> max_speed_mm_s;  ///< of each mirror; absent limits are not checked
+  std::optional<Rational> max_acceleration_mm_s2;
+  std::optional<Rational> max_jerk_mm_s3;
+  bool cross_scan_correction = true;  ///< V follows the moving surface
+  Rational offset_deg = 0;            ///< where round the circumference the lines lie, 0 at the top
+  Rational tilt_deg_per_mm = 0;  ///< f-theta lens: tilt of the beam a mm of distance from the centre; 0: telecentric
+  std::string field_grid;        ///< text of the scanner's distortion (docs/formats/field_grid.md); empty: none
+};
+
+/// A field grid in a plan has at most so many bytes: a program carries it.
+inline constexpr std::size_t kMostPlanGridBytes = std::size_t{1} << 19U;
+
 struct JobPlan {
   std::int64_t revolutions = 0;
   std::int64_t ticks = 0;
@@ -121,6 +141,7 @@ struct Plan {
   AbPlan ab;
   std::optional<CarriagePlan> carriage;  ///< helical mode
   std::optional<BandsPlan> bands;        ///< none: the image fits the field
+  std::optional<ScannerPlan> scanner;    ///< none: the job does not say how large the field is
   JobPlan job;
   std::vector<std::string> warnings;
 };

@@ -30,8 +30,15 @@ struct MirrorTurn {
 /// allows. Constant speed reaches from the set-point before the first pulse to the one after the last.
 class LinePath {
  public:
+  /// From where to where a line has constant speed, in slots of the line.
+  struct Window {
+    double begin;
+    double end;
+  };
+
   /// Fails with out_of_range where the dark slots are too few for the turn under the scanner's limits, naming the turn
-  /// that would do, where a limit is exceeded while marking, and where the field is too small.
+  /// that would do, where a limit is exceeded while marking, and where a pulse lies outside the field. Turns may swing
+  /// further than the field: see reach_mm().
   /// `lead_ticks`: how much earlier than the path the set-points are sent.
   static Result<LinePath> plan(const LineTiming& timing, const LineGeometry& geometry, bool cross_scan_correction,
                                std::int64_t lead_ticks = 0);
@@ -46,6 +53,10 @@ class LinePath {
   kinematics::Vector3 target(double pixel) const;
   /// Joints at a time of a line.
   kinematics::JointPositions joints_at(double slot) const;
+  /// How far either mirror gets from the centre of the field, turns included.
+  double reach_mm() const noexcept;
+  /// The set-points around the first and the last pulse included; outside it the mirrors turn.
+  Window marking(Direction direction) const noexcept;
   /// Middle of the forward marking window, the time the joints stand at LineGeometry::at_centre.
   double centre_slot() const noexcept;
 
@@ -63,12 +74,6 @@ class LinePath {
         geometry_(geometry),
         cross_scan_correction_(cross_scan_correction),
         lead_slots_(static_cast<double>(lead_ticks) / static_cast<double>(timing.ticks_per_slot)) {}
-  /// Constant speed from and to, in slots of the line.
-  struct Window {
-    double begin;
-    double end;
-  };
-  Window window(Direction direction) const noexcept;
   Direction other(Direction direction) const noexcept;
   double turn_slots(Direction before) const noexcept;
   std::int64_t enough_turn_slots() const;

@@ -20,6 +20,7 @@ struct LineTiming {
   std::int64_t reverse_first_slot = 0;  ///< of the marking window, the offset included
   std::int64_t offset_slots = 0;        ///< the pulses of reverse lines are so much later than the scanner's path
   bool bidirectional = true;
+  std::int64_t offset_remainder_ticks = 0;  ///< and by so many FPGA ticks more; less than a slot
 
   std::int64_t ticks() const noexcept { return slots * ticks_per_slot; }
   double slot_s() const noexcept { return static_cast<double>(ticks_per_slot) / static_cast<double>(fpga_hz); }
@@ -29,6 +30,12 @@ struct LineTiming {
   /// The slot in which a line that runs this way marks the pixel (counted from the left whichever way it runs).
   std::int64_t slot_of_pixel(Direction direction, std::int64_t pixel) const noexcept {
     return direction == Direction::forward ? forward_first_slot + pixel : reverse_first_slot + pixels - 1 - pixel;
+  }
+  /// When the pulse of a slot fires, in slots of the line: the slot's start, on reverse lines later by the remainder.
+  double pulse_at(Direction direction, std::int64_t slot) const noexcept {
+    return static_cast<double>(slot) + (direction == Direction::forward ? 0.0
+                                                                        : static_cast<double>(offset_remainder_ticks) /
+                                                                              static_cast<double>(ticks_per_slot));
   }
 };
 

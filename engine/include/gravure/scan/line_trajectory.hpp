@@ -36,8 +36,9 @@ struct LineQuality {
   double incidence_deg = 0;  ///< largest angle between the beam and the surface's normal while marking
 };
 
-/// What the galvo is told line after line. Made only by make_line_trajectory(), which guarantees that every set-point
-/// lies in the field, that turns keep the scanner's limits, and that lines of one direction are alike to the bit.
+/// What the galvo is told line after line. Made only by make_line_trajectory(), which guarantees that every pulse lies
+/// in the field, that turns keep the scanner's limits, and that lines of one direction are alike to the bit. In the
+/// turns set-points may leave the field, with a warning.
 struct LineTrajectory {
   LinePath path;
   TrajectoryOptions options;

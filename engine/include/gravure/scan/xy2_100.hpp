@@ -41,8 +41,11 @@ std::uint32_t encode_frame(FrameForm form, std::int32_t count) noexcept;
 Result<std::int32_t> decode_frame(FrameForm form, std::uint32_t word);
 
 /// The frames of one line, one a set-point; counts of fewer bits than the frame's are shifted up. Fails with
-/// out_of_range where the scanner's resolution_bits exceed the form's: nothing is rounded here.
+/// out_of_range where the scanner's resolution_bits exceed the form's, and where a set-point lies beyond the field:
+/// nothing is rounded or clamped here.
 Result<std::vector<FramePosition>> frames_of(const LineTrajectory& trajectory, Direction direction, FrameForm form);
+/// Of any set-points of a scanner of so many bits.
+Result<std::vector<FramePosition>> frames_of(const std::vector<SetPoint>& points, int resolution_bits, FrameForm form);
 
 /// How often the set-points come. XY2-100 heads take 100 kHz at its 2 MHz clock.
 Rational frame_rate_hz(const LineTiming& timing);

@@ -26,6 +26,9 @@ namespace gravure {
 /// Helical mode: window and revolutions as CarriagePlan says; the carriage's channel is solved like the other one, and
 /// of all lengths of line the one with the smallest largest drift in um counts.
 ///
+/// Scanner: where scanner.field_mm is given, what the job says of the scanner is taken over as it is; whether lines and
+/// turns keep its limits is plan_trajectory()'s to say (scan).
+///
 /// `columns`: pixels of a whole image line. `exposures`: rotary and flat, revolutions (passes) of each band; helical,
 /// the layers there are, which must be carriage.layers.
 ///

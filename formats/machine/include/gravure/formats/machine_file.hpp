@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "gravure/core/error.hpp"
+#include "gravure/core/exact.hpp"
 #include "gravure/kinematics/machine.hpp"
 
 namespace gravure {
@@ -22,6 +25,17 @@ Result<kinematics::Machine> read_machine(const std::string& path);
 /// is out_of_range where every violation is a number outside its range, bad_argument otherwise; text beyond
 /// kMaxMachineBytes is bad_file.
 Result<kinematics::Machine> parse_machine(std::string_view text, const std::string& path);
+
+/// A machine together with the numbers as the file writes them.
+struct MachineFile {
+  kinematics::Machine machine;
+  /// Every single number that the file gives, exact, by its place: "head.field_mm", "X.max_speed_mm_s".
+  std::map<std::string, Rational, std::less<>> numbers;
+};
+
+/// The same as read_machine() and parse_machine(), with the numbers.
+Result<MachineFile> read_machine_file(const std::string& path);
+Result<MachineFile> parse_machine_file(std::string_view text, const std::string& path);
 
 /// One key of the machine file; the table in docs/formats/machine.md has the same rows.
 struct MachineKey {

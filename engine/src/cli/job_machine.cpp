@@ -1,0 +1,146 @@
+#include "job_machine.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace gravure::cli {
+namespace {
+
+using kinematics::Joint;
+using kinematics::JointKind;
+
+/// Takes values over from the machine file; what the job gives as well becomes a line of the error.
+class Filling {
+ public:
+  Filling(const MachineFile& file, const Job& job) : file_(file), job_(job) {}
+
+  /// The number of the machine file, where it gives one.
+  const Rational* number(const std::string& place, const std::string& job_key) {
+    const auto at = file_.numbers.find(place);
+    if (at == file_.numbers.end()) {
+      return nullptr;
+    }
+    refuse_twice(job_key, place);
+    return &at->second;
+  }
+  void refuse_twice(const std::string& job_key, const std::string& place) {
+    if (job_.places.count(job_key) != 0) {
+      complain(job_.place_of(job_key) + job_key + ": the machine file gives " + place +
+               "; take one of the two out, so that one place says it");
+    }
+  }
+  void complain(const std::string& text) { text_ += (text_.empty() ? "" : "\n") + text; }
+  Result<void> result() const { return text_.empty() ? Result<void>() : Error{ErrorCode::bad_argument, text_}; }
+
+ private:
+  const MachineFile& file_;
+  const Job& job_;
+  std::string text_;
+};
+
+void fill(Filling& filling, const std::string& key, Rational& setting) {
+  if (const Rational* number = filling.number("head." + key, "scanner." + key)) {
+    setting = *number;
+  }
+}
+
+void fill(Filling& filling, const std::string& key, std::optional<Rational>& setting) {
+  if (const Rational* number = filling.number("head." + key, "scanner." + key)) {
+    setting = *number;
+  }
+}
+
+void fill_head(const MachineFile& file, Filling& filling, ScannerSettings& scanner) {
+  fill(filling, "field_mm", scanner.field_mm);
+  fill(filling, "lag_us", scanner.lag_us);
+  fill(filling, "max_speed_mm_s", scanner.max_speed_mm_s);
+  fill(filling, "max_acceleration_mm_s2", scanner.max_acceleration_mm_s2);
+  fill(filling, "max_jerk_mm_s3", scanner.max_jerk_mm_s3);
+  if (filling.number("head.resolution_bits", "scanner.resolution_bits") != nullptr) {
+    scanner.resolution_bits = file.machine.head.resolution_bits;
+  }
+  if (file.machine.head.lens == kinematics::Lens::telecentric) {
+    filling.refuse_twice("scanner.tilt_deg_per_mm", "head.lens = \"telecentric\"");
+    scanner.tilt_deg_per_mm = 0;
+  } else {
+    fill(filling, "tilt_deg_per_mm", scanner.tilt_deg_per_mm);
+  }
+}
+
+/// The one joint of this kind along a direction; none where there is none.
+const Joint* axis_of(const MachineFile& file, JointKind kind, const kinematics::Vector3& along, const char* section,
+                     Filling& filling) {
+  constexpr double kParallel = 1 - 1e-9;
+  const Joint* found = nullptr;
+  for (const Joint& joint : file.machine.joints) {
+    if (joint.kind != kind || std::abs(joint.axis.dot(along)) < kParallel) {
+      continue;
+    }
+    if (found != nullptr) {
+      filling.complain("machine.file: joints " + found->name + " and " + joint.name + " could both be the axis of [" +
+                       section + "]; leave one of them in a file of its own");
+      return nullptr;
+    }
+    found = &joint;
+  }
+  return found;
+}
+
+void fill_limits(Filling& filling, const Joint* joint, const std::string& section, AxisLimits& limits) {
+  if (joint == nullptr) {
+    return;
+  }
+  const std::string unit = joint->kind == JointKind::revolute ? "deg" : "mm";
+  const auto take = [&](const std::string& key, std::optional<Rational>& limit) {
+    if (const Rational* number = filling.number(joint->name + "." + key, section + "." + key)) {
+      limit = *number;
+    }
+  };
+  take("max_speed_" + unit + "_s", limits.max_speed);
+  take("max_acceleration_" + unit + "_s2", limits.max_acceleration);
+  take("max_jerk_" + unit + "_s3", limits.max_jerk);
+}
+
+}  // namespace
+
+Result<void> apply_machine(const MachineFile& file, Job& job) {
+  Filling filling(file, job);
+  const kinematics::ScanHead& head = file.machine.head;
+  if (head.u_axis.cross(head.v_axis).dot(head.beam_axis) < 0) {
+    filling.complain(job.place_of("machine.file") +
+                     "machine.file: u_axis, v_axis and beam_axis of its head are left-handed: in the raster modes V "
+                     "counts from line to line; turn v_axis round");
+  }
+  fill_head(file, filling, job.scanner);
+  const auto axis = [&](JointKind kind, const kinematics::Vector3& along, const char* section, AxisLimits& limits) {
+    fill_limits(filling, axis_of(file, kind, along, section, filling), section, limits);
+  };
+  if (job.mode == Mode::flat) {
+    axis(JointKind::prismatic, head.v_axis, "stage", job.stage.limits);
+  } else {
+    axis(JointKind::revolute, head.u_axis, "rotary", job.rotary.limits);
+  }
+  if (job.mode == Mode::helical) {
+    axis(JointKind::prismatic, head.u_axis, "carriage", job.carriage.limits);
+  }
+  return filling.result();
+}
+
+Result<void> read_machine_of(Job& job) {
+  if (!job.machine.file) {
+    return {};
+  }
+  const std::string path = (std::filesystem::path(job.path).parent_path() / *job.machine.file).string();
+  const auto file = read_machine_file(path);
+  if (!file) {
+    return Error{file.error().code, file.error().message.rfind(path + ":", 0) == 0 && !job.path.empty()
+                                        ? file.error().message
+                                        : job.place_of("machine.file") + file.error().message};
+  }
+  return apply_machine(file.value(), job);
+}
+
+}  // namespace gravure::cli

@@ -1,0 +1,145 @@
+#include "job_scanner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "gravure/core/file_output.hpp"
+#include "gravure/scan/field_grid.hpp"
+#include "gravure/scan/plan_trajectory.hpp"
+
+namespace gravure::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string beside(const Job& job, const std::string& file) {
+  return (fs::path(job.path).parent_path() / file).string();
+}
+
+/// `error` with the place of the key it is about: the first of those that it names.
+Error at_key(const Job& job, const Error& error) {
+  for (const char* key : {"turn_slots", "field_mm", "lag_us", "offset_deg", "max_speed_mm_s", "field_grid"}) {
+    if (error.message.find(key) != std::string::npos) {
+      return {error.code, job.place_of(std::string("scanner.") + key) + error.message};
+    }
+  }
+  return {error.code, job.place_of("scanner") + error.message};
+}
+
+bool has_limits(const ScannerPlan& scanner) {
+  return scanner.max_speed_mm_s || scanner.max_acceleration_mm_s2 || scanner.max_jerk_mm_s3;
+}
+
+/// Nothing that a trajectory would be asked for.
+bool says_only_its_field(const ScannerPlan& scanner) {
+  return !has_limits(scanner) && scanner.lag_us == 0 && scanner.offset_deg == 0 && scanner.tilt_deg_per_mm == 0 &&
+         scanner.field_grid.empty();
+}
+
+/// To 1e-9 of the unit: what is less depends on the compiler.
+Json figure(double value) {
+  return std::round(value * 1e9) / 1e9 + 0.0;
+}
+
+/// The turn with the least time to spare.
+struct Turn {
+  double lasts_us = 0;
+  double shortest_us = 0;  ///< 0: no limits
+};
+
+Turn tightest_turn(const scan::LinePath& path) {
+  Turn tightest;
+  bool is_first = true;
+  for (const scan::Direction before : {scan::Direction::forward, scan::Direction::reverse}) {
+    if (before == scan::Direction::reverse && !path.timing().bidirectional) {
+      continue;
+    }
+    for (const scan::MirrorTurn& turn : path.turn_after(before)) {
+      const Turn here{turn.lasts_s * 1e6, turn.shortest_s * 1e6};
+      if (is_first || here.lasts_us - here.shortest_us < tightest.lasts_us - tightest.shortest_us) {
+        tightest = here;
+        is_first = false;
+      }
+    }
+  }
+  return tightest;
+}
+
+}  // namespace
+
+Result<void> read_scanner_files(Job& job) {
+  if (!job.scanner.field_grid) {
+    return {};
+  }
+  const std::string path = beside(job, *job.scanner.field_grid);
+  const auto text = read_file(path, scan::kMostGridBytes);
+  if (!text) {
+    return Error{text.error().code, job.place_of("scanner.field_grid") + text.error().message};
+  }
+  GRAVURE_TRY(const scan::FieldGrid grid, scan::parse_field_grid(text.value(), path));
+  job.scanner.field_grid_text = scan::field_grid_text(grid);
+  return {};
+}
+
+Result<std::optional<scan::LineTrajectory>> check_trajectory(const Job& job, Plan& plan) {
+  if (!plan.scanner) {
+    return std::optional<scan::LineTrajectory>();
+  }
+  Result<scan::LineTrajectory> made = scan::plan_trajectory(plan);
+  if (!made && says_only_its_field(*plan.scanner)) {
+    plan.warnings.push_back("no set-points for the scanner: " + made.error().message);
+    return std::optional<scan::LineTrajectory>();
+  }
+  if (!made) {
+    return at_key(job, made.error());
+  }
+  for (const std::string& warning : made.value().warnings) {
+    if (has_limits(*plan.scanner) || warning.find(": absent, ") == std::string::npos) {
+      plan.warnings.push_back(warning);
+    }
+  }
+  return std::optional(std::move(made).value());
+}
+
+std::string trajectory_text(const scan::LineTrajectory& trajectory) {
+  const scan::LineQuality& quality = trajectory.quality;
+  const Turn turn = tightest_turn(trajectory.path);
+  const double slot_us = trajectory.path.timing().slot_s() * 1e6;
+  std::string text = fmt::format(
+      "{:<10}{:.6g} mm/s, turn {:.6g} us = {:.6g} slots of constant speed to constant speed, {}, reach {:.6g} mm\n",
+      "scanner", trajectory.scan_speed_mm_s, turn.lasts_us, turn.lasts_us / slot_us,
+      turn.shortest_us > 0 ? fmt::format("shortest {:.6g} us", turn.shortest_us) : "shortest unknown without limits",
+      trajectory.path.reach_mm());
+  text += fmt::format(
+      "{:<10}{:.3g} um along and {:.3g} um across the line at most, focus {:.3g} um, incidence {:.4g} deg, a count is "
+      "{:.4g} um\n",
+      "landing", quality.along_um, quality.across_um, quality.defocus_um, quality.incidence_deg,
+      trajectory.resolution_mm * 1000);
+  return text;
+}
+
+Json trajectory_json(const scan::LineTrajectory& trajectory) {
+  const scan::LineQuality& quality = trajectory.quality;
+  const Turn turn = tightest_turn(trajectory.path);
+  return {{"set_points", trajectory.forward.size()},
+          {"resolution_um", figure(trajectory.resolution_mm * 1000)},
+          {"scan_speed_mm_s", figure(trajectory.scan_speed_mm_s)},
+          {"turn_us", figure(turn.lasts_us)},
+          {"shortest_turn_us", turn.shortest_us > 0 ? figure(turn.shortest_us) : Json(nullptr)},
+          {"reach_mm", figure(trajectory.path.reach_mm())},
+          {"lag_ticks", trajectory.lag_ticks},
+          {"lag_remainder_ticks", json_ratio(trajectory.lag_remainder_ticks)},
+          {"along_um", figure(quality.along_um)},
+          {"across_um", figure(quality.across_um)},
+          {"interpolation_um", figure(quality.interpolation_um)},
+          {"defocus_um", figure(quality.defocus_um)},
+          {"straight_um", figure(quality.straight_um)},
+          {"incidence_deg", figure(quality.incidence_deg)},
+          {"field_grid_error_um", figure(trajectory.field_grid_error_um)}};
+}
+
+}  // namespace gravure::cli
