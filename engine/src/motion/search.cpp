@@ -10,33 +10,13 @@
 #include "gravure/motion/shaper.hpp"
 #include "mode_constants.hpp"
 #include "search_global.hpp"
+#include "worst_case.hpp"
 
 namespace gravure::motion {
 namespace {
 
 SFactorRequest request_of(const SearchProblem& problem, const Candidate& c) {
   return {{problem.stroke_mm, c.v_mm_s, c.a_up_mm_s2, c.a_down_mm_s2, 0, 0}, c.s_factor, problem.update_us};
-}
-
-/// The terms of one mode's residual for every error of it.
-std::vector<ResidualSignal::Term> error_terms(const SearchProblem& problem, const Mode& mode,
-                                              std::span<const InputJump> input) {
-  static constexpr std::array<double, 5> kFine{-1, -0.5, 0, 0.5, 1};
-  static constexpr std::array<double, 3> kCoarse{-1, 0, 1};
-  static constexpr std::array<double, 1> kNone{0};
-  const bool few = problem.modes.size() <= 3;
-  const auto frequencies = few ? std::span<const double>(kFine) : std::span<const double>(kCoarse);
-  const auto dampings = few ? std::span<const double>(kCoarse) : std::span<const double>(kNone);
-  const double error = problem.mode_error_percent / 100;
-  std::vector<ResidualSignal::Term> terms;
-  for (const double f : frequencies) {
-    for (const double d : dampings) {
-      const std::array<Mode, 1> off{
-          Mode{mode.f_hz * (1 + f * error), std::min(0.999, mode.zeta * (1 + d * error)), mode.participation}};
-      terms.push_back(residual_of(off, input, problem.band.of).terms()[0]);
-    }
-  }
-  return terms;
 }
 
 Alternative measure(const SearchProblem& problem, std::string name, const std::vector<InputJump>& input) {
@@ -181,26 +161,7 @@ Result<Found> find_profiles(const SearchProblem& problem, const SearchOptions& o
 }  // namespace
 
 double worst_positioning_time_s(const SearchProblem& problem, std::span<const InputJump> input) {
-  if (input.empty()) {
-    return 0;
-  }
-  std::vector<std::vector<ResidualSignal::Term>> terms;
-  std::size_t combinations = 1;
-  for (const Mode& mode : problem.modes) {
-    terms.push_back(error_terms(problem, mode, input));
-    combinations *= terms.back().size();
-  }
-  double worst = 0;
-  for (std::size_t combination = 0; combination < combinations; ++combination) {
-    ResidualSignal signal;
-    std::size_t rest = combination;
-    for (const auto& of_mode : terms) {
-      signal.add(of_mode[rest % of_mode.size()]);
-      rest /= of_mode.size();
-    }
-    worst = std::max(worst, signal.last_exit_s(problem.band.tolerance));
-  }
-  return input.back().time_s + worst;
+  return input.empty() ? 0 : input.back().time_s + worst_case(problem, input).after_s;
 }
 
 Result<SearchReport> search(const SearchProblem& problem, const SearchOptions& options) {

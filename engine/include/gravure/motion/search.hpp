@@ -99,8 +99,9 @@ struct SearchOptions {
 /// point is feasible. Not proved global; never worse than its grids. Fails like search_grid() and settle().
 Result<SearchReport> search(const SearchProblem& problem, const SearchOptions& options);
 
-/// Longest positioning time over a raster of mode errors: every frequency at 5 levels and every damping at 3 within
-/// +-mode_error_percent (3 and 1 levels beyond three modes).
+/// Longest positioning time over all errors of the modes within +-mode_error_percent of each frequency and damping, each
+/// on its own; shares stay. Never less than the truth, and not more than the truth for a band 0.1 % narrower, as long as
+/// the proof stays within its means (else the time from which on the band is proved to hold).
 double worst_positioning_time_s(const SearchProblem& problem, std::span<const InputJump> input);
 
 }  // namespace gravure::motion
