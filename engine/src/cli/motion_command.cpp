@@ -197,7 +197,7 @@ void add_search(CLI::App& parent, Command& command) {
   verb->add_option("--seed", options->seed, "Of the random starting points")
       ->check(integer_from(0, std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str();
-  verb->add_option("--effort", options->effort, "Multiplies the random starting points")
+  verb->add_option("--effort", options->effort, "Rounds with random starting points; one more is never worse")
       ->check(integer_from(1, 1000))
       ->capture_default_str();
   add_output_options(*verb, options->output);

@@ -30,7 +30,7 @@ Result<void> check_move(const Move& move) {
 
 Result<void> check_request(const SFactorRequest& request) {
   GRAVURE_CHECK(check_move(request.move));
-  GRAVURE_CHECK(check_range("s_factor", request.s_factor, 0, 1e9));
+  GRAVURE_CHECK(check_range("s_factor", request.s_factor, 0, kMostSFactor));
   return check_range("update_us", request.update_us, 1e-3, 1e9);
 }
 

@@ -7,6 +7,9 @@
 
 namespace gravure::motion {
 
+/// Longest jerk segment, in updates.
+inline constexpr double kMostSFactor = 1e9;
+
 /// out_of_range unless low <= value <= high; the message names `field`.
 Result<void> check_range(std::string_view field, double value, double low, double high);
 Result<void> check_move(const Move& move);

@@ -61,9 +61,30 @@ Durations MoveSpace::durations_of(const Candidate& c) const noexcept {
 Candidate MoveSpace::candidate_at(const MovePoint& point) const noexcept {
   const Move move = move_at(point);
   const Durations& d = move.durations;
-  return {
+  Candidate c{
       move.velocity,     move.velocity / d.up_s,     move.velocity / d.down_s, d.jerk_s / (problem_.update_us * 1e-6),
       d.access_time_s(), cost(kernel_, move, kNever)};
+  // Rounding must not carry a limit's own value over the limit.
+  c.v_mm_s = std::min(c.v_mm_s, problem_.v_max_mm_s);
+  c.a_up_mm_s2 = std::min(c.a_up_mm_s2, problem_.a_up_max_mm_s2);
+  c.a_down_mm_s2 = std::min(c.a_down_mm_s2, problem_.a_down_max_mm_s2);
+  c.s_factor = std::max(c.s_factor, least_s_factor(problem_, std::max(c.a_up_mm_s2, c.a_down_mm_s2)));
+  return c;
+}
+
+double least_s_factor(const SearchProblem& problem, double a_mm_s2) noexcept {
+  if (problem.jerk_max_mm_s3 >= 1e21) {
+    return 0;
+  }
+  double s_factor = a_mm_s2 / problem.jerk_max_mm_s3 / (problem.update_us * 1e-6);
+  while (a_mm_s2 / (s_factor * problem.update_us * 1e-6) > problem.jerk_max_mm_s3) {
+    s_factor = std::nextafter(s_factor, kNever);
+  }
+  return s_factor;
+}
+
+void MoveSpace::also_under(const std::vector<Mode>& modes) {
+  corners_.emplace_back(modes, problem_.band.of);
 }
 
 double MoveSpace::cost(const ResidualKernel& kernel, const Move& move, double cutoff) const noexcept {
@@ -87,13 +108,13 @@ double MoveSpace::exact_cost(const MovePoint& point, double cutoff) const noexce
 double MoveSpace::worst_cost(const MovePoint& point, double cutoff) const noexcept {
   const Move move = move_at(point);
   double worst = cost(kernel_, move, cutoff);
-  for (const ResidualKernel& corner : corners_) {
+  for (std::size_t i = 0; i < corners_.size() && worst < cutoff; ++i) {
+    worst = std::max(worst, cost(corners_[i], move, cutoff));
     if (worst >= cutoff) {
-      return kNever;
+      std::swap(corners_[i], corners_[i / 2]);  // what refuses one point is likely to refuse the next
     }
-    worst = std::max(worst, cost(corner, move, cutoff));
   }
-  return worst;
+  return worst < cutoff ? worst : kNever;
 }
 
 }  // namespace gravure::motion

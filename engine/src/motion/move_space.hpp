@@ -32,16 +32,20 @@ class MoveSpace {
   /// when the profile is planned again from its parameters.
   /// Infinite where it can be seen at a glance that it is not below `cutoff`.
   double exact_cost(const MovePoint& point, double cutoff) const noexcept;
-  /// The longest over the modes as given and every combination of their errors.
+  /// The longest over the modes as given, every corner of their errors, and the errors added since.
   double worst_cost(const MovePoint& point, double cutoff) const noexcept;
+  void also_under(const std::vector<Mode>& modes);
   std::uint64_t evaluated() const noexcept { return evaluated_; }
 
  private:
   double cost(const ResidualKernel& kernel, const Move& move, double cutoff) const noexcept;
   const SearchProblem& problem_;
   ResidualKernel kernel_;
-  std::vector<ResidualKernel> corners_;
+  mutable std::vector<ResidualKernel> corners_;  ///< in any order
   mutable std::uint64_t evaluated_ = 0;
 };
+
+/// The S factor at which an acceleration just keeps the jerk limit; 0 without such a limit.
+double least_s_factor(const SearchProblem& problem, double a_mm_s2) noexcept;
 
 }  // namespace gravure::motion

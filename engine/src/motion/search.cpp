@@ -6,18 +6,15 @@
 #include <array>
 #include <cmath>
 
+#include "find_profiles.hpp"
 #include "gravure/motion/plan_profile.hpp"
 #include "gravure/motion/shaper.hpp"
-#include "mode_constants.hpp"
-#include "search_global.hpp"
+#include "move_space.hpp"
+#include "search_problem.hpp"
 #include "worst_case.hpp"
 
 namespace gravure::motion {
 namespace {
-
-SFactorRequest request_of(const SearchProblem& problem, const Candidate& c) {
-  return {{problem.stroke_mm, c.v_mm_s, c.a_up_mm_s2, c.a_down_mm_s2, 0, 0}, c.s_factor, problem.update_us};
-}
 
 Alternative measure(const SearchProblem& problem, std::string name, const std::vector<InputJump>& input) {
   Alternative row;
@@ -43,10 +40,8 @@ Result<Alternative> measure_candidate(const SearchProblem& problem, std::string 
 
 /// All limits at once, with the shortest jerk time that keeps the jerk limit.
 Candidate fastest_of(const SearchProblem& problem) {
-  const double steepest = std::max(problem.a_up_max_mm_s2, problem.a_down_max_mm_s2);
-  const double jerk_s = problem.jerk_max_mm_s3 < 1e21 ? steepest / problem.jerk_max_mm_s3 : 0;
-  return {
-      problem.v_max_mm_s, problem.a_up_max_mm_s2, problem.a_down_max_mm_s2, jerk_s / (problem.update_us * 1e-6), 0, 0};
+  const double s_factor = least_s_factor(problem, std::max(problem.a_up_max_mm_s2, problem.a_down_max_mm_s2));
+  return {problem.v_max_mm_s, problem.a_up_max_mm_s2, problem.a_down_max_mm_s2, s_factor, 0, 0};
 }
 
 Result<void> add_shaped(const SearchProblem& problem, ShaperKind kind, SearchReport& report) {
@@ -125,37 +120,18 @@ void judge(const SearchProblem& problem, SearchReport& report) {
   }
 }
 
-/// Profiles by name, each seeding the next, so none is worse than those before it.
-struct Found {
-  Candidate symmetric;
-  Candidate asymmetric;
-  std::optional<Candidate> robust;
-};
-
-Result<Found> find_profiles(const SearchProblem& problem, const SearchOptions& options, SearchReport& report) {
-  const MoveSpace space(problem);
-  std::vector<MovePoint> symmetric_seeds;
-  std::vector<MovePoint> seeds;
-  if (options.grid) {
-    GRAVURE_TRY(const GridSearch symmetric, search_grid(problem, *options.grid, false));
-    GRAVURE_TRY(const GridSearch asymmetric, search_grid(problem, *options.grid, true));
-    symmetric_seeds.push_back(MoveSpace::point_of(space.durations_of(symmetric.best)));
-    seeds.push_back(MoveSpace::point_of(space.durations_of(asymmetric.best)));
-    report.evaluated += symmetric.evaluated + asymmetric.evaluated;
-    report.grids = SearchedGrids{symmetric, asymmetric};
+/// What there is to say where there is nothing to move.
+SearchReport standing(const SearchProblem& problem, const SearchOptions& options) {
+  SearchReport report;
+  report.best = {problem.v_max_mm_s, problem.a_up_max_mm_s2, problem.a_down_max_mm_s2, 0, 0, 0};
+  for (const char* name : {"fastest", "best_symmetric", "best_asymmetric", "robust", "zv", "zvd"}) {
+    if (options.robust || std::string_view(name) != "robust") {
+      report.alternatives.push_back({name, report.best, 0, 0, 0, 0, 0});
+    }
   }
-  Found found;
-  const MovePoint symmetric = search_global(space, problem, options, SearchFor::symmetric, symmetric_seeds);
-  found.symmetric = space.candidate_at(symmetric);
-  seeds.push_back(symmetric);
-  const MovePoint asymmetric = search_global(space, problem, options, SearchFor::asymmetric, seeds);
-  found.asymmetric = space.candidate_at(asymmetric);
-  if (options.robust) {
-    seeds.push_back(asymmetric);
-    found.robust = space.candidate_at(search_global(space, problem, options, SearchFor::robust, seeds));
-  }
-  report.evaluated += space.evaluated();
-  return found;
+  report.verdict = "The stroke is 0: nothing moves, and every profile has settled at once.";
+  report.shortest = report.shortest_worst = "fastest";
+  return report;
 }
 
 }  // namespace
@@ -164,10 +140,17 @@ double worst_positioning_time_s(const SearchProblem& problem, std::span<const In
   return input.empty() ? 0 : input.back().time_s + worst_case(problem, input).after_s;
 }
 
-Result<SearchReport> search(const SearchProblem& problem, const SearchOptions& options) {
-  GRAVURE_CHECK(check_problem(problem));
+Result<SearchReport> search(const SearchProblem& given, const SearchOptions& options) {
+  GRAVURE_CHECK(check_problem(given));
+  if (given.stroke_mm == 0) {
+    return standing(given, options);
+  }
+  SearchProblem problem = given;  // limits go with the sense of the move, so its sign does not matter
+  problem.stroke_mm = std::abs(given.stroke_mm);
+  GRAVURE_TRY(const FoundProfiles found, find_profiles(problem, options));
   SearchReport report;
-  GRAVURE_TRY(const Found found, find_profiles(problem, options, report));
+  report.evaluated = found.evaluated;
+  report.grids = found.grids;
   const auto add = [&](const char* name, const Candidate& candidate) -> Result<void> {
     GRAVURE_TRY(Alternative row, measure_candidate(problem, name, candidate));
     report.alternatives.push_back(std::move(row));

@@ -27,30 +27,28 @@ class Random {
 
 class GlobalSearch {
  public:
-  GlobalSearch(const MoveSpace& space, const SearchProblem& problem, const SearchOptions& options, SearchFor what)
-      : space_(space), problem_(problem), options_(options), what_(what), random_(options.seed) {}
+  GlobalSearch(const MoveSpace& space, SearchFor what) : space_(space), what_(what) {}
 
-  MovePoint run(const std::vector<MovePoint>& seeds) {
+  std::vector<MovePoint> run(const SearchProblem& problem, std::uint64_t stream, const std::vector<MovePoint>& seeds) {
     for (const MovePoint& seed : seeds) {
       consider(seed);
     }
-    add_notch_grid();
-    add_random_points();
-    const int steps = what_ == SearchFor::robust ? 120 : 150;
+    add_notch_grid(problem);
+    add_random_points(problem, stream);
     std::vector<Vertex<4>> ends;
     for (const Vertex<4>& start : starts_) {
-      ends.push_back(refine(start, 0.1, steps));
+      ends.push_back(refine(start, 0.1));
     }
-    keep_best(ends, 3);
-    Vertex<4> best = ends.front();
-    for (const Vertex<4>& end : ends) {
-      Vertex<4> now = end;
-      for (const double size : {0.3, 0.1, 0.03, 0.01, 0.003}) {
-        now = refine(now, size, steps);
-      }
-      best = now.cost < best.cost ? now : best;
+    keep_best(ends, what_ == SearchFor::robust ? 3 : 15);
+    return polish(ends);
+  }
+
+  std::vector<MovePoint> polish(const std::vector<MovePoint>& starts) {
+    std::vector<Vertex<4>> ends;
+    for (const MovePoint& start : starts) {
+      ends.push_back({start, cost(start, std::numeric_limits<double>::infinity())});
     }
-    return shaped(best.x);
+    return polish(ends);
   }
 
  private:
@@ -61,9 +59,22 @@ class GlobalSearch {
   double cost(const MovePoint& x, double cutoff) const noexcept {
     return what_ == SearchFor::robust ? space_.worst_cost(x, cutoff) : space_.exact_cost(shaped(x), cutoff);
   }
+  std::vector<MovePoint> polish(std::vector<Vertex<4>> ends) const {
+    for (Vertex<4>& end : ends) {
+      for (const double size : {0.3, 0.1, 0.03, 0.01, 0.003}) {
+        end = refine(end, size);
+      }
+    }
+    keep_best(ends, ends.size());
+    std::vector<MovePoint> points;
+    for (const Vertex<4>& end : ends) {
+      points.push_back(shaped(end.x));
+    }
+    return points;
+  }
   /// Keeps the best starts only, in order.
   void consider(const MovePoint& x) {
-    const std::size_t most = what_ == SearchFor::robust ? 12 : 40;
+    const std::size_t most = what_ == SearchFor::robust ? 12 : 120;
     const bool full = starts_.size() >= most;
     const double value = cost(x, full ? starts_.back().cost : std::numeric_limits<double>::infinity());
     if (full && value >= starts_.back().cost) {
@@ -73,8 +84,8 @@ class GlobalSearch {
     starts_.insert(std::upper_bound(starts_.begin(), starts_.end(), value, after), {x, value});
     starts_.resize(std::min(starts_.size(), most));
   }
-  void consider(double jerk_s, double up_s, double down_s) {
-    const double cruise_s = problem_.stroke_mm / problem_.v_max_mm_s - jerk_s - (up_s + down_s) / 2;
+  void consider(const SearchProblem& problem, double jerk_s, double up_s, double down_s) {
+    const double cruise_s = problem.stroke_mm / problem.v_max_mm_s - jerk_s - (up_s + down_s) / 2;
     consider(MoveSpace::point_of({jerk_s, up_s, down_s, cruise_s}));
     if (cruise_s > 0) {
       consider(MoveSpace::point_of({jerk_s, up_s, down_s, 0}));
@@ -82,9 +93,9 @@ class GlobalSearch {
   }
 
   /// A segment as long as a whole period of a mode leaves nothing of it: start near such durations.
-  void add_notch_grid() {
+  void add_notch_grid(const SearchProblem& problem) {
     std::vector<double> widths;
-    for (const Mode& mode : problem_.modes) {
+    for (const Mode& mode : problem.modes) {
       for (const double periods : {0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0}) {
         widths.push_back(periods / mode.f_hz);
       }
@@ -98,24 +109,25 @@ class GlobalSearch {
       for (const double up_s : widths) {
         for (const double down_s : symmetric ? std::vector<double>{up_s} : widths) {
           if (up_s >= jerk_s && down_s >= jerk_s && count++ % stride == 0) {
-            consider(jerk_s, up_s, down_s);
+            consider(problem, jerk_s, up_s, down_s);
           }
         }
       }
     }
   }
 
-  void add_random_points() {
-    double slowest_s = problem_.stroke_mm / problem_.v_max_mm_s;
-    for (const Mode& mode : problem_.modes) {
+  void add_random_points(const SearchProblem& problem, std::uint64_t stream) {
+    Random random(stream);
+    double slowest_s = problem.stroke_mm / problem.v_max_mm_s;
+    for (const Mode& mode : problem.modes) {
       slowest_s = std::max(slowest_s, 3 / mode.f_hz);
     }
-    const std::uint32_t count = (what_ == SearchFor::robust ? 400U : 3000U) * std::max(1U, options_.effort);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const double jerk_s = random_.log_between(1e-3 * slowest_s, slowest_s);
-      const double up_s = jerk_s + random_.log_between(1e-3 * slowest_s, slowest_s);
-      const double down_s = jerk_s + random_.log_between(1e-3 * slowest_s, slowest_s);
-      consider(MoveSpace::point_of({jerk_s, up_s, down_s, random_.log_between(1e-3 * slowest_s, slowest_s)}));
+    const int count = what_ == SearchFor::robust ? 400 : 3000;
+    for (int i = 0; i < count; ++i) {
+      const double jerk_s = random.log_between(1e-3 * slowest_s, slowest_s);
+      const double up_s = jerk_s + random.log_between(1e-3 * slowest_s, slowest_s);
+      const double down_s = jerk_s + random.log_between(1e-3 * slowest_s, slowest_s);
+      consider(MoveSpace::point_of({jerk_s, up_s, down_s, random.log_between(1e-3 * slowest_s, slowest_s)}));
     }
   }
 
@@ -124,7 +136,8 @@ class GlobalSearch {
     vertices.resize(std::min(vertices.size(), count));
   }
 
-  Vertex<4> refine(const Vertex<4>& start, double size, int steps) const {
+  Vertex<4> refine(const Vertex<4>& start, double size) const {
+    const int steps = what_ == SearchFor::robust ? 120 : 150;
     const double scale = std::max({start.x[0], start.x[1], start.x[2], start.x[3]});
     const double edge = size * scale;
     return descend<4>(start, {edge, edge, edge, edge}, steps,
@@ -132,18 +145,19 @@ class GlobalSearch {
   }
 
   const MoveSpace& space_;
-  const SearchProblem& problem_;
-  const SearchOptions& options_;
   SearchFor what_;
-  Random random_;
   std::vector<Vertex<4>> starts_;
 };
 
 }  // namespace
 
-MovePoint search_global(const MoveSpace& space, const SearchProblem& problem, const SearchOptions& options,
-                        SearchFor what, const std::vector<MovePoint>& seeds) {
-  return GlobalSearch(space, problem, options, what).run(seeds);
+std::vector<MovePoint> search_global(const MoveSpace& space, const SearchProblem& problem, std::uint64_t stream,
+                                     SearchFor what, const std::vector<MovePoint>& seeds) {
+  return GlobalSearch(space, what).run(problem, stream, seeds);
+}
+
+std::vector<MovePoint> polish(const MoveSpace& space, SearchFor what, const std::vector<MovePoint>& starts) {
+  return GlobalSearch(space, what).polish(starts);
 }
 
 }  // namespace gravure::motion

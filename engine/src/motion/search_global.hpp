@@ -8,9 +8,12 @@ namespace gravure::motion {
 
 enum class SearchFor : std::uint8_t { symmetric, asymmetric, robust };
 
-/// The best point found from the notch grid (durations in fractions of the modes' periods), random points and the given
-/// `seeds`, by descents from the best of them. Never worse than any seed.
-MovePoint search_global(const MoveSpace& space, const SearchProblem& problem, const SearchOptions& options,
-                        SearchFor what, const std::vector<MovePoint>& seeds);
+/// The best few points, best first, found from the notch grid (durations in fractions of the modes' periods), random
+/// points of one stream and the given `seeds`, by descents from the best of them. The first is never worse than a seed.
+std::vector<MovePoint> search_global(const MoveSpace& space, const SearchProblem& problem, std::uint64_t stream,
+                                     SearchFor what, const std::vector<MovePoint>& seeds);
+
+/// Descents from each of `starts`, large steps first; the ends, best first.
+std::vector<MovePoint> polish(const MoveSpace& space, SearchFor what, const std::vector<MovePoint>& starts);
 
 }  // namespace gravure::motion

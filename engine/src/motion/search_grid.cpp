@@ -57,7 +57,7 @@ class GridWalk {
       return;
     }
     Durations d{0, velocity / a_up, velocity / a_down, 0};
-    const double room_s = problem_.stroke_mm / velocity - (d.up_s + d.down_s) / 2;
+    const double room_s = std::abs(problem_.stroke_mm) / velocity - (d.up_s + d.down_s) / 2;
     const double longest_s = std::min({d.up_s, d.down_s, room_s}) + kBorderRoom_s;
     for (std::size_t s = 0; s < jerk_turns_.size(); ++s) {
       d.jerk_s = jerk_time_s(s);
@@ -120,12 +120,19 @@ std::size_t GridAxis::count() const noexcept {
 }
 
 Result<void> check_problem(const SearchProblem& problem) {
-  GRAVURE_CHECK(check_range("stroke_mm", problem.stroke_mm, 1e-12, 1e15));
+  if (problem.stroke_mm != 0 && !(std::abs(problem.stroke_mm) >= 1e-12 && std::abs(problem.stroke_mm) <= 1e15)) {
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("motion: stroke_mm = {}: must be 0, or from 1e-12 to 1e+15 either way", problem.stroke_mm)};
+  }
   GRAVURE_CHECK(check_range("v_max_mm_s", problem.v_max_mm_s, 1e-12, 1e21));
   GRAVURE_CHECK(check_range("a_up_max_mm_s2", problem.a_up_max_mm_s2, 1e-12, 1e21));
   GRAVURE_CHECK(check_range("a_down_max_mm_s2", problem.a_down_max_mm_s2, 1e-12, 1e21));
-  GRAVURE_CHECK(check_range("jerk_max_mm_s3", problem.jerk_max_mm_s3, 1e-12, 1e21));
+  // A jerk segment up to the acceleration limit lasts no longer than the S factor can say.
+  const double steepest = std::max(problem.a_up_max_mm_s2, problem.a_down_max_mm_s2);
   GRAVURE_CHECK(check_range("update_us", problem.update_us, 1e-3, 1e9));
+  GRAVURE_CHECK(check_range("jerk_max_mm_s3", problem.jerk_max_mm_s3,
+                            std::max(1e-12, steepest / (kMostSFactor * problem.update_us * 1e-6)), 1e21));
   GRAVURE_CHECK(check_range("mode_error_percent", problem.mode_error_percent, 0, 50));
   GRAVURE_CHECK(check_range("band tolerance", problem.band.tolerance, 1e-300, 1e300));
   return check_modes(problem.modes);

@@ -200,6 +200,84 @@ TEST(Search, SaysWhereAShaperWins) {
   EXPECT_EQ(search(fine_stage(0.1), {}).value().shortest, "zv");
 }
 
+TEST(Search, IsNeverWorseForMoreEffortOrAGridAndHardlyDependsOnTheSeed) {
+  for (const double stroke : {0.3, 28.0}) {
+    const SearchProblem problem = fine_stage(stroke);
+    SearchOptions options;
+    const SearchReport first = search(problem, options).value();
+    const auto judge = [&](const SearchReport& better, const std::string& why) {
+      for (const char* name : {"best_symmetric", "best_asymmetric"}) {
+        EXPECT_LE(named(better, name).positioning_time_s, named(first, name).positioning_time_s) << why << stroke;
+      }
+      EXPECT_LE(named(better, "best_asymmetric").positioning_time_s,
+                named(better, "best_symmetric").positioning_time_s);
+      for (const char* name : {"best_symmetric", "best_asymmetric"}) {
+        EXPECT_LE(named(better, "robust").worst_positioning_time_s, named(better, name).worst_positioning_time_s);
+      }
+      EXPECT_LE(named(better, "robust").worst_positioning_time_s, named(first, "robust").worst_positioning_time_s)
+          << why << stroke;
+    };
+    options.effort = 3;
+    judge(search(problem, options).value(), "effort 3, ");
+    options = {};
+    options.grid = SearchGrid{{100, 500, 50}, {1000, 10000, 1000}, {2.5, 115, 5}};
+    if (search_grid(problem, *options.grid, false)) {  // the smallest stroke has no point on it
+      judge(search(problem, options).value(), "grid, ");
+    }
+    options = {};
+    for (const std::uint64_t seed : {77U}) {
+      options.seed = seed;
+      const SearchReport other = search(problem, options).value();
+      EXPECT_NEAR(other.best.positioning_time_s / first.best.positioning_time_s, 1, 0.1) << stroke;
+      EXPECT_NEAR(named(other, "robust").worst_positioning_time_s / named(first, "robust").worst_positioning_time_s, 1,
+                  0.03)
+          << stroke;
+    }
+  }
+}
+
+TEST(Search, KeepsItsLimitsToTheLastBit) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed());
+  for (int trial = 0; trial < 10; ++trial) {
+    SearchProblem problem = fine_stage(random.log_between(0.1, 50));
+    problem.v_max_mm_s = random.log_between(50, 700);
+    problem.a_up_max_mm_s2 = random.log_between(1000, 20000);
+    problem.a_down_max_mm_s2 = random.log_between(1000, 20000);
+    problem.jerk_max_mm_s3 = random.log_between(1e5, 1e7);
+    SearchOptions options;
+    options.robust = false;
+    for (const Alternative& row : search(problem, options).value().alternatives) {
+      const Candidate& c = row.profile.value();
+      EXPECT_LE(c.v_mm_s, problem.v_max_mm_s) << row.name;
+      EXPECT_LE(c.a_up_mm_s2, problem.a_up_max_mm_s2) << row.name;
+      EXPECT_LE(c.a_down_mm_s2, problem.a_down_max_mm_s2) << row.name;
+      const double jerk_s = c.s_factor * problem.update_us * 1e-6;
+      EXPECT_LE(std::max(c.a_up_mm_s2, c.a_down_mm_s2) / jerk_s, problem.jerk_max_mm_s3) << row.name;
+    }
+  }
+}
+
+TEST(Search, TakesStrokesOfEitherSenseAndNone) {
+  SearchProblem problem = fine_stage(5);
+  const SearchReport forward = search(problem, {}).value();
+  problem.stroke_mm = -5;
+  const SearchReport backward = search(problem, {}).value();
+  EXPECT_EQ(forward.verdict, backward.verdict);
+  EXPECT_EQ(forward.best.positioning_time_s, backward.best.positioning_time_s);
+  problem.stroke_mm = 0;
+  const SearchReport none = search(problem, {}).value();
+  EXPECT_EQ(none.alternatives.size(), forward.alternatives.size());
+  EXPECT_EQ(none.best.positioning_time_s, 0);
+  EXPECT_NE(none.verdict.find("nothing moves"), std::string::npos);
+  for (const double jerk : {1e-12, 1e-6}) {
+    problem.jerk_max_mm_s3 = jerk;
+    const auto refused = search(problem, {});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("jerk_max_mm_s3"), std::string::npos) << refused.error().message;
+  }
+}
+
 TEST(Search, IsTheSameEveryTime) {
   const SearchProblem problem = fine_stage(5);
   const SearchReport first = search(problem, {}).value();
@@ -218,7 +296,7 @@ TEST(Search, RefusesWhatItCannotSearch) {
   problem.modes.clear();
   EXPECT_FALSE(search(problem, {}));
   problem = published(test::fit_b());
-  problem.stroke_mm = 0;
+  problem.stroke_mm = 1e-13;
   EXPECT_FALSE(search(problem, {}));
 }
 

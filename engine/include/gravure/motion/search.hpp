@@ -12,7 +12,7 @@ namespace gravure::motion {
 
 /// The move whose positioning time is to be shortest: from rest to rest under limits, carrying modes.
 struct SearchProblem {
-  double stroke_mm = 0;  ///< > 0
+  double stroke_mm = 0;  ///< of either sign: limits go with the sense of the move
   double v_max_mm_s = 0;
   double a_up_max_mm_s2 = 0;
   double a_down_max_mm_s2 = 0;
@@ -90,18 +90,19 @@ struct SearchReport {
 
 struct SearchOptions {
   std::optional<SearchGrid> grid;  ///< searched completely first, symmetric and asymmetric
-  std::uint64_t seed = 1;          ///< of the random starting points
-  std::uint32_t effort = 1;        ///< multiplies the number of starting points
+  std::uint64_t seed = 1;          ///< of the random starting points; the first round does without
+  std::uint32_t effort = 1;        ///< rounds with random starting points; one more never makes a profile worse
   bool robust = true;              ///< also optimise for the worst case
 };
 
 /// Global search by notch-grid and random starts and a simplex descent of the best ones, in durations, where every
-/// point is feasible. Not proved global; never worse than its grids. Fails like search_grid() and settle().
+/// point is feasible. Not proved global; never worse than its grids, than with less effort, and the asymmetric profile
+/// never slower than the symmetric one. Fails like search_grid() and settle().
 Result<SearchReport> search(const SearchProblem& problem, const SearchOptions& options);
 
-/// Longest positioning time over all errors of the modes within +-mode_error_percent of each frequency and damping, each
-/// on its own; shares stay. Never less than the truth, and not more than the truth for a band 0.1 % narrower, as long as
-/// the proof stays within its means (else the time from which on the band is proved to hold).
+/// Longest positioning time over all errors of the modes within +-mode_error_percent of each frequency and damping,
+/// each on its own; shares stay. Never less than the truth, and not more than the truth for a band 0.1 % narrower, as
+/// long as the proof stays within its means (else the time from which on the band is proved to hold).
 double worst_positioning_time_s(const SearchProblem& problem, std::span<const InputJump> input);
 
 }  // namespace gravure::motion
