@@ -3,6 +3,7 @@
 #include "gravure/formats/grv.hpp"
 #include "gravure/raster/place.hpp"
 #include "program_files.hpp"
+#include "program_trajectory.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -13,14 +14,6 @@ struct Options {
   std::int64_t revolution = 0;
   std::int64_t line = 0;
 };
-
-Result<void> check_index(const char* option, std::int64_t value, std::int64_t count) {
-  if (value < 0 || value >= count) {
-    return Error{ErrorCode::out_of_range, std::string(option) + " " + std::to_string(value) +
-                                              ": the program has 0 to " + std::to_string(count - 1)};
-  }
-  return {};
-}
 
 /// Takes the line as the device gets it on its way through the pins: the window's bits in the dark slots around it.
 class SlotText final : public PinObserver {

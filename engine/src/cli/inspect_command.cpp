@@ -27,11 +27,18 @@ Json json_of(const ProgramHeader& header) {
                       {"starts", direction_name(layer.starts_reverse)},
                       {"fired_pixels", layer.fired_pixels}});
   }
+  Json set_points = Json::array();
+  for (const LineSetPoints& line : header.set_points) {
+    set_points.push_back({{"direction", direction_name(line.reverse)},
+                          {"stage", line.backwards ? "backwards" : "onwards"},
+                          {"set_points", line.u_counts.size()}});
+  }
   return {{"format_version", header.format_version},
           {"job_path", header.job_path},
           {"fires", polarity_name(header.fires)},
           {"lines_along", header.lines_along == LinesAlong::rows ? "rows" : "columns"},
           {"plan", Json::parse(plan_to_json(header.plan))},
+          {"set_points", set_points},
           {"sources", sources},
           {"layers", layers},
           {"layer_of_revolution", header.layer_of_revolution}};
@@ -41,6 +48,10 @@ std::string text_of(const ProgramHeader& header, const std::string& path) {
   std::string text =
       fmt::format("program   {} (format {}), made from {}\n", path, header.format_version, header.job_path);
   text += plan_text(header.plan);
+  if (!header.set_points.empty()) {
+    text += fmt::format("scanner   {} set-points a line, for {} kinds of lines\n", header.set_points[0].u_counts.size(),
+                        header.set_points.size());
+  }
   text += fmt::format("images    {} fires; {} sources, {} stored layers, {} {}\n", polarity_name(header.fires),
                       header.sources.size(), header.layers.size(), header.layer_of_revolution.size(),
                       turns_name(header.plan));

@@ -196,6 +196,9 @@ Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::stri
   header.job_path = relative_to(loaded.job.path, fs::path(program_path).parent_path());
   header.fires = loaded.job.image.fires;
   header.lines_along = loaded.job.image.lines_along;
+  if (loaded.trajectory) {
+    header.set_points = loaded.trajectory->stored_set_points();
+  }
   made.stack = stack_settings(loaded.job, loaded.plan);
   made.stack.samples = images.images.front().info.samples;
   made.stack.decoder_bytes = 0;

@@ -13,7 +13,7 @@
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_stack.hpp"
 #include "gravure/pipeline/layer_reader.hpp"
-#include "gravure/scan/line_trajectory.hpp"
+#include "gravure/scan/job_trajectory.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -22,9 +22,9 @@ namespace gravure::cli {
 struct LoadedJob {
   Job job;
   std::optional<ImageStack> images;
-  std::int64_t columns = 0;                        ///< pixels of an image line
-  Plan plan;                                       ///< its warnings hold those of the images and the scanner, too
-  std::optional<scan::LineTrajectory> trajectory;  ///< none without a scanner
+  std::int64_t columns = 0;                       ///< pixels of an image line
+  Plan plan;                                      ///< its warnings hold those of the images and the scanner, too
+  std::optional<scan::JobTrajectory> trajectory;  ///< none without a scanner
 };
 
 /// Reads and plans a job. A job that gives pixels_per_line can be planned without its images, unless `need_images`.

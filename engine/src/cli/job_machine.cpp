@@ -4,7 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
-#include <string_view>
+
+#include "gravure/core/file_output.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -134,13 +135,12 @@ Result<void> read_machine_of(Job& job) {
     return {};
   }
   const std::string path = (std::filesystem::path(job.path).parent_path() / *job.machine.file).string();
-  const auto file = read_machine_file(path);
-  if (!file) {
-    return Error{file.error().code, file.error().message.rfind(path + ":", 0) == 0 && !job.path.empty()
-                                        ? file.error().message
-                                        : job.place_of("machine.file") + file.error().message};
+  const auto text = read_file(path, kMaxMachineBytes);
+  if (!text) {
+    return Error{text.error().code, job.place_of("machine.file") + text.error().message};
   }
-  return apply_machine(file.value(), job);
+  GRAVURE_TRY(const MachineFile file, parse_machine_file(text.value(), path));
+  return apply_machine(file, job);
 }
 
 }  // namespace gravure::cli

@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 
 #include "gravure/core/file_output.hpp"
 #include "gravure/scan/field_grid.hpp"
-#include "gravure/scan/plan_trajectory.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -85,19 +82,19 @@ Result<void> read_scanner_files(Job& job) {
   return {};
 }
 
-Result<std::optional<scan::LineTrajectory>> check_trajectory(const Job& job, Plan& plan) {
+Result<std::optional<scan::JobTrajectory>> check_trajectory(const Job& job, Plan& plan) {
   if (!plan.scanner) {
-    return std::optional<scan::LineTrajectory>();
+    return std::optional<scan::JobTrajectory>();
   }
-  Result<scan::LineTrajectory> made = scan::plan_trajectory(plan);
+  Result<scan::JobTrajectory> made = scan::JobTrajectory::make(plan);
   if (!made && says_only_its_field(*plan.scanner)) {
     plan.warnings.push_back("no set-points for the scanner: " + made.error().message);
-    return std::optional<scan::LineTrajectory>();
+    return std::optional<scan::JobTrajectory>();
   }
   if (!made) {
     return at_key(job, made.error());
   }
-  for (const std::string& warning : made.value().warnings) {
+  for (const std::string& warning : made.value().of_revolution(0).warnings) {
     if (has_limits(*plan.scanner) || warning.find(": absent, ") == std::string::npos) {
       plan.warnings.push_back(warning);
     }

@@ -5,7 +5,7 @@
 
 #include "gravure/core/job.hpp"
 #include "gravure/core/plan.hpp"
-#include "gravure/scan/line_trajectory.hpp"
+#include "gravure/scan/job_trajectory.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -13,10 +13,10 @@ namespace gravure::cli {
 /// Fills in what the job leaves to its files: the text of the field grid.
 Result<void> read_scanner_files(Job& job);
 
-/// The trajectory of a plan's lines, where there is a scanner. Its warnings go to the plan's; that limits are absent is
-/// worth one only where others are given. Where the job says no more of the scanner than its field, what cannot be
+/// The trajectories of a plan's lines, where there is a scanner. Its warnings go to the plan's; that limits are absent
+/// is worth one only where others are given. Where the job says no more of the scanner than its field, what cannot be
 /// planned is a warning as well: such jobs ask for no trajectory.
-Result<std::optional<scan::LineTrajectory>> check_trajectory(const Job& job, Plan& plan);
+Result<std::optional<scan::JobTrajectory>> check_trajectory(const Job& job, Plan& plan);
 
 /// What `plan` prints of it: rows of text, and what stands under scanner.trajectory.
 std::string trajectory_text(const scan::LineTrajectory& trajectory);

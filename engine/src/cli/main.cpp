@@ -121,6 +121,9 @@ int run(int argc, char** argv) {
   gravure::cli::add_unroll(app, command);
   gravure::cli::add_verify(app, command);
   gravure::cli::add_emulate(app, command);
+  gravure::cli::add_trajectory(app, command);
+  gravure::cli::add_export(app, command);
+  gravure::cli::add_calibrate(app, command);
   gravure::cli::add_motion_command(app, command);
   try {
     refuse_ambiguous(app, arguments);

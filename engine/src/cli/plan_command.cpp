@@ -123,7 +123,8 @@ void add_plan(CLI::App& app, Command& command) {
         plan["line"]["ticks_per_microvector"] =
             loaded.plan.line.slots_per_microvector * loaded.plan.clock.ticks_per_slot;
         if (plan.contains("scanner")) {
-          plan["scanner"]["trajectory"] = loaded.trajectory ? trajectory_json(*loaded.trajectory) : Json(nullptr);
+          plan["scanner"]["trajectory"] =
+              loaded.trajectory ? trajectory_json(loaded.trajectory->of_revolution(0)) : Json(nullptr);
         }
         plan["image"] = {{"fires", polarity_name(image.fires)},
                          {"lines_along", image.lines_along == LinesAlong::rows ? "rows" : "columns"},
@@ -138,7 +139,7 @@ void add_plan(CLI::App& app, Command& command) {
       } else {
         print(plan_text(loaded.plan));
         if (loaded.trajectory) {
-          print(trajectory_text(*loaded.trajectory));
+          print(trajectory_text(loaded.trajectory->of_revolution(0)));
         }
         print(fmt::format("{:<10}{} fires, lines along {}, layers in order \"{}\"\n", "image",
                           polarity_name(image.fires), image.lines_along == LinesAlong::rows ? "rows" : "columns",

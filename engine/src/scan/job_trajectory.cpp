@@ -128,6 +128,18 @@ Result<std::vector<SetPoint>> JobTrajectory::set_points(const LineNumber& number
   return points;
 }
 
+std::vector<LineSetPoints> JobTrajectory::stored_set_points() const {
+  std::vector<LineSetPoints> kinds = kinds_of_lines(plan_);
+  for (LineSetPoints& kind : kinds) {
+    const LineTrajectory& trajectory = sweeps_[kind.backwards ? 1 : 0];
+    for (const SetPoint& point : trajectory.set_points(kind.reverse ? Direction::reverse : Direction::forward)) {
+      kind.u_counts.push_back(point.u_count);
+      kind.v_counts.push_back(point.v_count);
+    }
+  }
+  return kinds;
+}
+
 Result<FieldPoint> JobTrajectory::mirrors_at(std::int64_t ordinal, double slot, const LandingModel& model) const {
   const LineTrajectory& trajectory = of_revolution(number_of(ordinal).revolution);
   const LineTiming& timing = trajectory.path.timing();

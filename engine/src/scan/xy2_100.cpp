@@ -135,19 +135,28 @@ Rational frame_rate_hz(const LineTiming& timing) {
   return ratio(timing.fpga_hz, Integer(timing.ticks_per_slot) * timing.slots_per_microvector);
 }
 
-std::string encode_stream(const FrameStream& stream) {
+std::string encode_stream_start(FrameForm form, std::uint64_t frames) {
   std::string bytes(kMagic);
   bytes.push_back(static_cast<char>(kVersion));
-  bytes.push_back(static_cast<char>(position_bits(stream.form)));
+  bytes.push_back(static_cast<char>(position_bits(form)));
   bytes.append(2, '\0');
   for (unsigned shift = 0; shift < 64; shift += 8) {
-    bytes.push_back(static_cast<char>(stream.frames.size() >> shift & 0xFFU));
+    bytes.push_back(static_cast<char>(frames >> shift & 0xFFU));
   }
+  return bytes;
+}
+
+void append_frames(FrameForm form, const std::vector<FramePosition>& frames, std::string& bytes) {
+  for (const FramePosition& frame : frames) {
+    append_word(bytes, encode_frame(form, frame.u_count));
+    append_word(bytes, encode_frame(form, frame.v_count));
+  }
+}
+
+std::string encode_stream(const FrameStream& stream) {
+  std::string bytes = encode_stream_start(stream.form, stream.frames.size());
   bytes.reserve(kHeaderBytes + kFrameBytes * stream.frames.size());
-  for (const FramePosition& frame : stream.frames) {
-    append_word(bytes, encode_frame(stream.form, frame.u_count));
-    append_word(bytes, encode_frame(stream.form, frame.v_count));
-  }
+  append_frames(stream.form, stream.frames, bytes);
   return bytes;
 }
 

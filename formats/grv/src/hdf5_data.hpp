@@ -27,6 +27,11 @@ struct Hdf5Type<std::uint8_t> {
   static hid_t native() { return H5T_NATIVE_UINT8; }
 };
 template <>
+struct Hdf5Type<std::int32_t> {
+  static hid_t stored() { return H5T_STD_I32LE; }
+  static hid_t native() { return H5T_NATIVE_INT32; }
+};
+template <>
 struct Hdf5Type<std::uint32_t> {
   static hid_t stored() { return H5T_STD_U32LE; }
   static hid_t native() { return H5T_NATIVE_UINT32; }

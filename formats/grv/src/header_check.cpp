@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "set_point_table.hpp"
+
 namespace gravure::grv {
 namespace {
 
@@ -56,6 +58,7 @@ Result<void> check_header(const ProgramHeader& header, const Layout& layout,
     GRAVURE_CHECK(
         check_index("layer of revolution " + std::to_string(r), header.layer_of_revolution[r], layout.layers, code));
   }
+  GRAVURE_CHECK(check_set_points(header.set_points, header.plan, code));
   const auto chunks = static_cast<std::size_t>(layout.chunks_per_layer());
   for (std::size_t i = 0; i < header.layers.size(); ++i) {
     const auto of_layer = fired_of_chunks.subspan(i * chunks, chunks);

@@ -10,6 +10,7 @@
 #include "hdf5_data.hpp"
 #include "hdf5_session.hpp"
 #include "header_check.hpp"
+#include "set_point_table.hpp"
 #include "source_table.hpp"
 
 namespace gravure::grv {
@@ -147,7 +148,9 @@ Result<void> write_header(hid_t file, hid_t layers_group, const ProgramHeader& h
   GRAVURE_CHECK(write_layers(layers_group, header.layers));
   GRAVURE_TRY(const Handle revolutions, create_group(file, "revolutions"));
   const std::array<hsize_t, 1> shape = {header.layer_of_revolution.size()};
-  return write_table<std::uint32_t>(revolutions.get(), "layer", header.layer_of_revolution, shape, "layer number");
+  GRAVURE_CHECK(
+      write_table<std::uint32_t>(revolutions.get(), "layer", header.layer_of_revolution, shape, "layer number"));
+  return write_set_points(file, header.set_points);
 }
 
 Result<ProgramHeader> read_header(hid_t file, const Layout& layout) {
@@ -164,6 +167,7 @@ Result<ProgramHeader> read_header(hid_t file, const Layout& layout) {
   }
   const std::array<hsize_t, 1> shape = {static_cast<hsize_t>(header.plan.job.revolutions)};
   GRAVURE_TRY(header.layer_of_revolution, read_table<std::uint32_t>(file, "revolutions/layer", shape));
+  GRAVURE_TRY(header.set_points, read_set_points(file, header.plan));
   return header;
 }
 

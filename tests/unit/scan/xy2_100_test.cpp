@@ -158,5 +158,28 @@ TEST(Xy2Stream, DamageIsNamedByFrameAndChannel) {
   EXPECT_EQ(decode_stream(version).error().code, ErrorCode::version_mismatch);
 }
 
+TEST(Xy2Stream, RefusesSetPointsBeyondTheFieldAndNamesTheFirst) {
+  const std::vector<SetPoint> inside = {{0, 0, -32'768, 32'767}, {0, 0, 0, 0}};
+  EXPECT_TRUE(frames_of(inside, 16, FrameForm::bits16));
+  for (const SetPoint& beyond : {SetPoint{0, 0, 32'768, 0}, SetPoint{0, 0, 0, -32'769}}) {
+    std::vector<SetPoint> points = inside;
+    points.push_back(beyond);
+    points.push_back(beyond);
+    const auto refused = frames_of(points, 16, FrameForm::bits20);
+    ASSERT_FALSE(refused) << "not shifted into the wider frame either";
+    EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+    EXPECT_NE(refused.error().message.find("set-point 2 at"), std::string::npos) << refused.error().message;
+  }
+}
+
+TEST(Xy2Stream, WritesStreamsInPieces) {
+  const FrameStream stream{FrameForm::bits18, {{1, -2}, {131'071, -131'072}, {0, 3}}};
+  std::string pieces = encode_stream_start(stream.form, 3);
+  append_frames(stream.form, {stream.frames[0]}, pieces);
+  append_frames(stream.form, {stream.frames[1], stream.frames[2]}, pieces);
+  EXPECT_EQ(pieces, encode_stream(stream));
+  EXPECT_EQ(decode_stream(pieces).value().frames, stream.frames);
+}
+
 }  // namespace
 }  // namespace gravure::scan

@@ -31,6 +31,29 @@ struct StoredLayer {
   std::int64_t level = 0;   ///< depth maps: which slice of the source; else 0
 };
 
+/// The orders to the scanner, one for each microvector, of all lines that run one way. Counts are signed, 0 is the
+/// centre of the field, 2^resolution_bits of them make the field; in turns they may lie beyond it.
+struct LineSetPoints {
+  bool reverse = false;    ///< lines that run right to left
+  bool backwards = false;  ///< lines of the passes in which the stage of a flat job comes back
+  std::vector<std::int32_t> u_counts;
+  std::vector<std::int32_t> v_counts;
+};
+
+/// Every program whose plan describes the scanner has the set-points of these lines, in this order, or none at all.
+inline std::vector<LineSetPoints> kinds_of_lines(const Plan& plan) {
+  std::vector<LineSetPoints> kinds;
+  for (const bool backwards : {false, true}) {
+    for (const bool reverse : {false, true}) {
+      if ((!reverse || plan.line.bidirectional) &&
+          (!backwards || (plan.mode == Mode::flat && plan.job.revolutions > 1))) {
+        kinds.push_back({reverse, backwards, {}, {}});
+      }
+    }
+  }
+  return kinds;
+}
+
 /// Everything in a program but the bits of its lines.
 struct ProgramHeader {
   static constexpr std::uint32_t kFormatVersion = 1;
@@ -43,6 +66,7 @@ struct ProgramHeader {
   std::vector<SourceImage> sources;
   std::vector<StoredLayer> layers;
   std::vector<std::uint32_t> layer_of_revolution;
+  std::vector<LineSetPoints> set_points;  ///< none: the plan has no scanner, or the program is older than these
 
   /// Bytes of the marking window of one line: pixels packed MSB first in time order, 1 fires, unused low bits of the
   /// last byte 0.

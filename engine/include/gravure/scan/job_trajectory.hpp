@@ -4,6 +4,7 @@
 
 #include "gravure/core/exposure_map.hpp"
 #include "gravure/core/plan.hpp"
+#include "gravure/core/program.hpp"
 #include "gravure/scan/landing.hpp"
 #include "gravure/scan/plan_trajectory.hpp"
 
@@ -45,6 +46,10 @@ class JobTrajectory {
   /// The point of the workpiece that a pixel of a line is meant for: its column along x, its image line round the
   /// circumference or along y. In the first line's frame of SlotState.
   kinematics::Vector3 target_of(const LineNumber& number, std::int64_t pixel) const;
+
+  /// What a program stores: the set-points of each way that lines run, of a helical job those of lines that start on a
+  /// whole column.
+  std::vector<LineSetPoints> stored_set_points() const;
 
   const Plan& plan() const noexcept { return plan_; }
 

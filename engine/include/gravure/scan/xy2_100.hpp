@@ -59,6 +59,9 @@ struct FrameStream {
 /// "GXY2", version 1, the position bits, two zero bytes, the number of frames (8 bytes, lowest first), then for each
 /// frame U and V in 3 bytes each, highest first, the frame in the low bits.
 std::string encode_stream(const FrameStream& stream);
+/// The same in pieces: what stands before so many frames, and frames.
+std::string encode_stream_start(FrameForm form, std::uint64_t frames);
+void append_frames(FrameForm form, const std::vector<FramePosition>& frames, std::string& bytes);
 
 /// Checks every frame. Fails with bad_file (version_mismatch for another version), naming the frame and the channel.
 Result<FrameStream> decode_stream(std::string_view bytes);

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "gravure/core/file_output.hpp"
+#include "gravure/scan/calibrate.hpp"
+#include "program_files.hpp"
+#include "verb.hpp"
+
+namespace gravure::cli {
+namespace {
+
+constexpr std::size_t kMostPointBytes = std::size_t{1} << 26U;
+
+struct Options {
+  std::string points;
+  std::string output;
+  std::string field_mm;
+  std::string smoothing = "0.0001";
+  std::size_t columns = 17;
+  std::size_t rows = 17;
+};
+
+/// To 1e-6 um: marks are not measured closer, and what is less depends on the compiler.
+double figure(double um) {
+  return std::round(um * 1e6) / 1e6 + 0.0;
+}
+
+Result<int> run(const Options& options, const Command& command) {
+  GRAVURE_CHECK(refuse_overwrite(options.output, {options.points}));
+  GRAVURE_TRY(const Rational field_mm, decimal_option("--field-mm", options.field_mm));
+  GRAVURE_TRY(const Rational smoothing, decimal_option("--smoothing", options.smoothing));
+  GRAVURE_TRY(const std::string text, read_file(options.points, kMostPointBytes));
+  const auto points = scan::parse_measured_points(text);
+  if (!points) {
+    return Error{points.error().code, options.points + ": " + points.error().message};
+  }
+  GRAVURE_TRY(const scan::Calibration made,
+              scan::calibrate_field(points.value(),
+                                    {to_double(field_mm), options.columns, options.rows, to_double(smoothing)}));
+  GRAVURE_CHECK(write_file(options.output, scan::field_grid_text(made.grid)));
+  const scan::MeasuredPoint& worst = points.value()[made.worst];
+  const double interpolation_um = figure(made.grid.interpolation_error_um());
+  if (command.json) {
+    print_json({{"grid", options.output},
+                {"points", points.value().size()},
+                {"columns", made.grid.columns},
+                {"rows", made.grid.rows},
+                {"rms_um", figure(made.rms_um)},
+                {"max_um", figure(made.max_um)},
+                {"worst", {{"point", made.worst}, {"u_mm", worst.order.u_mm}, {"v_mm", worst.order.v_mm}}},
+                {"interpolation_um", interpolation_um}});
+  } else {
+    print(
+        fmt::format("{} marks on a grid of {} x {} in {}: misfit {:.4g} um rms, {:.4g} um at most (mark {} at U {} "
+                    "mm, V {} mm); interpolation adds {:.4g} um\n",
+                    points.value().size(), made.grid.columns, made.grid.rows, options.output, figure(made.rms_um),
+                    figure(made.max_um), made.worst, worst.order.u_mm, worst.order.v_mm, interpolation_um));
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Command& command) {
+  CLI::App* verb = add_verb(app, command, "calibrate",
+                            "Field grid from measured marks: CSV with u_order_mm, v_order_mm, u_landing_mm, "
+                            "v_landing_mm, a mark a line");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("POINTS", options->points, "Marks (CSV)")->required();
+  verb->add_option("-o,--output", options->output, "Field grid to write, for scanner.field_grid")->required();
+  verb->add_option("--field-mm", options->field_mm, "Side of the field that the grid covers")->required();
+  constexpr std::int64_t kFewest = 2;
+  verb->add_option("--columns", options->columns, "Nodes along U")
+      ->check(integer_from(kFewest, scan::kMostCalibrationNodes))
+      ->capture_default_str();
+  verb->add_option("--rows", options->rows, "Nodes along V")
+      ->check(integer_from(kFewest, scan::kMostCalibrationNodes))
+      ->capture_default_str();
+  verb->add_option("--smoothing", options->smoothing, "Weight of bending against misfit, above 0, at most 1")
+      ->capture_default_str();
+  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+}
+
+}  // namespace gravure::cli

@@ -1,0 +1,207 @@
+#include <fmt/format.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "gravure/scan/xy2_100.hpp"
+#include "program_files.hpp"
+#include "program_trajectory.hpp"
+#include "text_output.hpp"
+#include "verb.hpp"
+
+namespace gravure::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string program;
+  std::string folder;
+  int form = 0;                  ///< 0: the smallest that carries the resolution
+  std::int64_t revolution = -1;  ///< helical mode: which one
+};
+
+/// What is written, file by file.
+struct StreamFile {
+  std::string name;
+  std::uint64_t frames = 0;
+};
+
+/// A folder that appears whole or not at all, where there was none or an empty one.
+class FolderOutput {
+ public:
+  static Result<FolderOutput> create(const std::string& path) {
+    std::error_code failed;
+    const fs::file_status there = fs::symlink_status(path, failed);
+    if (fs::exists(there) && (!fs::is_directory(there) || !fs::is_empty(path, failed))) {
+      return Error{ErrorCode::bad_argument, path + ": is there already, and is no empty folder; give another"};
+    }
+    const fs::path whole = fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path();
+    std::string temporary = whole.string() + ".XXXXXX";
+    if (::mkdtemp(temporary.data()) == nullptr) {
+      return Error{ErrorCode::io, path + ": cannot make a folder beside it; is its parent there and writable?"};
+    }
+    fs::permissions(temporary,
+                    fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
+                        fs::perms::others_exec,
+                    failed);
+    return FolderOutput(whole, temporary);
+  }
+  FolderOutput(FolderOutput&& other) noexcept : path_(other.path_), temporary_(std::exchange(other.temporary_, {})) {}
+  FolderOutput(const FolderOutput&) = delete;
+  FolderOutput& operator=(const FolderOutput&) = delete;
+  FolderOutput& operator=(FolderOutput&&) = delete;
+  ~FolderOutput() {
+    std::error_code ignored;
+    if (!temporary_.empty()) {
+      fs::remove_all(temporary_, ignored);
+    }
+  }
+  fs::path file(const std::string& name) const { return temporary_ / name; }
+  Result<void> commit() {
+    std::error_code failed;
+    fs::rename(temporary_, path_, failed);
+    if (failed) {
+      return Error{ErrorCode::io, path_.string() + ": cannot put the folder in its place: " + failed.message()};
+    }
+    temporary_.clear();
+    return {};
+  }
+
+ private:
+  FolderOutput(fs::path path, fs::path temporary) : path_(std::move(path)), temporary_(std::move(temporary)) {}
+  fs::path path_;
+  fs::path temporary_;
+};
+
+Result<scan::FrameForm> form_of(const Options& options, int resolution_bits) {
+  return scan::frame_form_for(options.form != 0 ? options.form : resolution_bits);
+}
+
+std::string name_of(const LineSetPoints& line, bool flat) {
+  const std::string direction = direction_name(line.reverse);
+  return flat ? direction + (line.backwards ? "_backwards.gxy2" : "_onwards.gxy2") : direction + ".gxy2";
+}
+
+/// Rotary and flat: each way that lines run, once.
+Result<std::vector<StreamFile>> write_kinds(const ProgramHeader& header, scan::FrameForm form,
+                                            const FolderOutput& folder) {
+  std::vector<StreamFile> files;
+  const bool flat = header.plan.mode == Mode::flat;
+  for (const LineSetPoints& line : header.set_points) {
+    std::vector<scan::SetPoint> points;
+    for (std::size_t k = 0; k < line.u_counts.size(); ++k) {
+      points.push_back({0, 0, line.u_counts[k], line.v_counts[k]});
+    }
+    scan::FrameStream stream{form, {}};
+    GRAVURE_TRY(stream.frames, scan::frames_of(points, header.plan.scanner->resolution_bits, form));
+    files.push_back({name_of(line, flat), stream.frames.size()});
+    GRAVURE_CHECK(write_file(folder.file(files.back().name).string(), scan::encode_stream(stream)));
+  }
+  return files;
+}
+
+/// Helical: the lines of a revolution, one after the other, for each starts at another fraction of a column.
+Result<std::vector<StreamFile>> write_revolution(const scan::JobTrajectory& trajectory, std::int64_t revolution,
+                                                 scan::FrameForm form, const FolderOutput& folder) {
+  const Plan& plan = trajectory.plan();
+  const std::int64_t lines = plan.rotary.lines_per_revolution;
+  const StreamFile file{fmt::format("revolution_{}.gxy2", revolution),
+                        static_cast<std::uint64_t>(lines) * trajectory.of_revolution(revolution).forward.size()};
+  GRAVURE_TRY(TextOutput output, TextOutput::create(folder.file(file.name).string()));
+  output.text() += scan::encode_stream_start(form, file.frames);
+  ProgressBar bar("export");
+  for (std::int64_t line = 0; line < lines; ++line) {
+    GRAVURE_TRY(const std::vector<scan::SetPoint> points, trajectory.set_points({revolution, line}));
+    const auto frames = scan::frames_of(points, plan.scanner->resolution_bits, form);
+    if (!frames) {
+      return Error{frames.error().code, fmt::format("line {}: {}", line, frames.error().message)};
+    }
+    scan::append_frames(form, frames.value(), output.text());
+    output.flush(false);
+    bar.update(line + 1, lines);
+    if (cancel_token().cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped; nothing was written"};
+    }
+  }
+  GRAVURE_CHECK(output.commit());
+  return std::vector<StreamFile>{file};
+}
+
+Result<void> check_revolution(const Options& options, const Plan& plan) {
+  if (!plan.carriage) {
+    return options.revolution < 0
+               ? Result<void>()
+               : Error{ErrorCode::bad_argument,
+                       "--revolution: only lines of helical jobs differ from each other; leave it out"};
+  }
+  if (options.revolution < 0) {
+    return Error{ErrorCode::bad_argument,
+                 "--revolution is missing: the lines of a helical job start at different fractions of a column, so a "
+                 "revolution is exported at a time"};
+  }
+  return check_index("--revolution", options.revolution, plan.job.revolutions);
+}
+
+Result<int> run(const Options& options, const Command& command) {
+  GRAVURE_TRY(const ProgramTrajectory opened, open_trajectory(options.program));
+  const ProgramHeader& header = opened.program->header();
+  const Plan& plan = header.plan;
+  GRAVURE_CHECK(check_revolution(options, plan));
+  if (header.set_points.empty()) {
+    return Error{ErrorCode::bad_argument, options.program + ": stores no set-points: compile the job again"};
+  }
+  GRAVURE_TRY(const scan::FrameForm form, form_of(options, plan.scanner->resolution_bits));
+  const Rational rate_hz = scan::frame_rate_hz(scan::line_timing(plan));
+  if (rate_hz > Rational(100'000)) {
+    warn(
+        fmt::format("set-points come at {:.6g} Hz: XY2-100 and XY3-100 carry 100000 frames a second; take more "
+                    "scanner.slots_per_microvector",
+                    to_double(rate_hz)));
+  }
+  cancel_token();  // before there is a folder
+  GRAVURE_TRY(FolderOutput folder, FolderOutput::create(options.folder));
+  std::vector<StreamFile> files;
+  GRAVURE_TRY(files, plan.carriage ? write_revolution(opened.trajectory, options.revolution, form, folder)
+                                   : write_kinds(header, form, folder));
+  GRAVURE_CHECK(folder.commit());
+  if (command.json) {
+    Json list = Json::array();
+    for (const StreamFile& file : files) {
+      list.push_back({{"file", (fs::path(options.folder) / file.name).string()}, {"frames", file.frames}});
+    }
+    print_json({{"position_bits", scan::position_bits(form)},
+                {"frame_bits", scan::frame_bits(form)},
+                {"frame_rate_hz", to_double(rate_hz)},
+                {"files", list}});
+    return kDone;
+  }
+  for (const StreamFile& file : files) {
+    print(fmt::format("{}: {} frames of {} bits with {}-bit positions, {:.8g} a second\n",
+                      (fs::path(options.folder) / file.name).string(), file.frames, scan::frame_bits(form),
+                      scan::position_bits(form), to_double(rate_hz)));
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Command& command) {
+  CLI::App* verb = add_verb(app, command, "export",
+                            "Set-points as frames for digital scan heads: rotary and flat jobs, each way that lines "
+                            "run once; helical jobs, the lines of one revolution in order");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
+  verb->add_option("--xy2-100", options->folder, "Folder for the frame files: new, or empty")->required();
+  verb->add_option("--form", options->form,
+                   "Position bits: 16 (XY2-100), 18 (XY2-100 Enhanced) or 20 (XY3-100); default: the fewest that carry "
+                   "scanner.resolution_bits")
+      ->check(CLI::IsMember({"16", "18", "20"}));
+  verb->add_option("--revolution", options->revolution, "Helical jobs: which revolution, from 0")
+      ->check(integer_from(0, kMostIndex));
+  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+}
+
+}  // namespace gravure::cli
