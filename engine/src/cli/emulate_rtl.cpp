@@ -105,6 +105,7 @@ Result<Json> counter_on_rtl(const EmulateOptions& options) {
       emulator::kRtlFifoBits,
       [&boards](const fpga::Synchro::Inputs& inputs, std::uint64_t clocks) { return boards.hold(inputs, clocks); });
   DeviceSetup setup;
+  setup.clock_multiplier = setup.ticks_per_slot = fpga::AbGenerator::kClockMultiplier;
   setup.counter_bits = options.registers.bits;
   setup.prescaler = options.registers.prescaler;
   setup.increment = options.registers.increment;

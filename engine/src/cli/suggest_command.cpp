@@ -89,10 +89,11 @@ Result<int> run(Options options, const Command& command) {
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.job, files, false));
   if (loaded.job.mode != Mode::rotary) {
-    return Error{ErrorCode::bad_argument,
-                 loaded.job.place_of("job.mode") + "job.mode = \"" + std::string(mode_name(loaded.job.mode)) +
-                     "\": suggest looks at rotary jobs; here set fpga.fractional = true, which has no drift at all, or "
-                     "raise scanner.max_extra_slots"};
+    return Error{
+        ErrorCode::bad_argument,
+        loaded.job.place_of("job.mode") + "job.mode = \"" + std::string(mode_name(loaded.job.mode)) +
+            "\": suggest looks at rotary jobs; here set fpga.fractional = true, with which nothing but a carriage "
+            "drifts, or raise scanner.max_extra_slots"};
   }
   const std::int64_t revolutions = revolutions_per_band(loaded.plan);
   GRAVURE_TRY(const std::vector<Suggestion> found,

@@ -3,13 +3,13 @@
 #include <limits>
 #include <string>
 
+#include "gravure/core/device_link.hpp"
 #include "gravure/core/plan.hpp"
 
 namespace gravure::sync_plan {
 namespace {
 
 constexpr std::int64_t kMostHz = 1'000'000'000'000;
-constexpr std::int64_t kMostMultiplier = 1'000'000;
 constexpr std::int64_t kMostMillimetres = 1'000'000;
 constexpr std::int64_t kMostMicrometres = 1'000'000'000;
 constexpr int kLeastCounterBits = 8;
@@ -22,9 +22,9 @@ constexpr int kMostTiltDegPerMm = 10;
 
 void check_clocks(const Job& job, Violations& violations) {
   violations.check_range("laser.seed_hz", job.laser.seed_hz, 1, kMostHz);
-  violations.check_range("laser.pulse_divider", job.laser.pulse_divider, 1, kMostCount);
+  violations.check_range("laser.pulse_divider", job.laser.pulse_divider, 1, kMostSeedsPerSlot);
   violations.check_range("laser.max_pulse_on_demand_hz", job.laser.max_pulse_on_demand_hz, 1, kMostHz);
-  violations.check_range("fpga.clock_multiplier", job.fpga.clock_multiplier, 1, kMostMultiplier);
+  violations.check_range("fpga.clock_multiplier", job.fpga.clock_multiplier, 1, kMostClockMultiplier);
   violations.check_range("fpga.counter_bits", job.fpga.counter_bits, kLeastCounterBits, kMostCounterBits);
   violations.check_range("fpga.max_prescaler", job.fpga.max_prescaler, 1, std::numeric_limits<std::uint64_t>::max());
 }

@@ -9,8 +9,7 @@ namespace gravure::sync_plan {
 
 /// Largest number of slots, lines, pixels or encoder lines: beyond any machine, small enough for products of a few.
 inline constexpr std::int64_t kMostCount = 1'000'000'000;
-inline constexpr std::int64_t kMostPulseDivider = 1'000'000;  ///< that a job file may give
-inline constexpr std::int64_t kMostGearTurns = 1'000'000;     ///< on either side
+inline constexpr std::int64_t kMostGearTurns = 1'000'000;  ///< on either side
 /// Each candidate costs a best pair of some microseconds.
 inline constexpr std::int64_t kMostTurnSlots = 10'000'000;
 inline constexpr std::int64_t kMostExtraSlots = 100'000;

@@ -121,18 +121,13 @@ std::pair<std::string_view, std::string> lines_key(const Job& job) {
   return {"rotary.line_pitch_um", number_text(*job.rotary.line_pitch_um)};
 }
 
-/// Ticks of line, revolution and job for the longest line in question. Refuses what does not fit 64 bits.
+/// Ticks of revolution and job for the longest line in question. Refuses what does not fit 64 bits; a line always does.
 void check_ticks(const Job& job, const Plan& plan, std::int64_t longest_line, Violations& violations) {
   const Integer line = Integer(longest_line) * plan.clock.ticks_per_slot;
   const Integer revolution = line * plan.rotary.lines_per_revolution;
   const Integer whole = revolution * plan.job.revolutions;
   const Integer most = std::numeric_limits<std::int64_t>::max();
-  if (line > most) {
-    violations.refuse(ErrorCode::out_of_range, plan.carriage ? "carriage.feed_pixels" : "image.pixels_per_line",
-                      plan.carriage ? number_text(plan.carriage->feed_pixels) : std::to_string(plan.line.pixels),
-                      "a line takes " + to_string(line) + " FPGA ticks, beyond 64-bit integers; at most " +
-                          to_string(Integer(most / plan.clock.ticks_per_slot)) + " slots a line fit");
-  } else if (revolution > most) {
+  if (revolution > most) {
     const auto [key, value] = lines_key(job);
     const std::string turn = job.mode == Mode::flat ? "pass" : "revolution";
     violations.refuse(ErrorCode::out_of_range, key, value,

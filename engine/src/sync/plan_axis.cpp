@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "check_job.hpp"
+#include "gravure/core/device_link.hpp"
 #include "line_window.hpp"
 
 namespace gravure::sync_plan {
@@ -44,7 +45,7 @@ std::string what_would_fit(const Job& job, const Plan& plan, const AxisRequest& 
     ways.push_back("lines of at least " + to_string(least_slots) +
                    " slots (scanner.turn_slots >= " + to_string(Integer(least_slots - plan.line.pixels)) + ")");
   }
-  if (const Integer divider = ceil_of(excess * Rational(job.laser.pulse_divider)); divider <= kMostPulseDivider) {
+  if (const Integer divider = ceil_of(excess * Rational(job.laser.pulse_divider)); divider <= kMostSeedsPerSlot) {
     ways.push_back("laser.pulse_divider >= " + to_string(divider));
   }
   if (ways.empty()) {
@@ -62,7 +63,7 @@ Result<AbSolution> solve(const Job& job, const Plan& plan, const AxisRequest& ax
   const Rational fpga_hz = plan.clock.fpga_hz;
   AbSolution solution;
   solution.wanted_increment = increment_per_clock(wanted_hz(plan, axis, slots), bits, fpga_hz);
-  if (job.fpga.fractional) {
+  if (axis.fraction) {
     GRAVURE_TRY(solution.fraction, exact_fraction(solution.wanted_increment, bits));
     solution.pair = {.prescaler = 1, .increment = solution.fraction.increment};
     return solution;
@@ -98,14 +99,16 @@ AxisRequest cross_scan_axis(const Job& job, const Plan& plan) {
             job.stage.max_ab_hz,
             rotary.edges_per_revolution,
             rotary.circumference_um,
-            job.stage.encoder_pitch_um};
+            job.stage.encoder_pitch_um,
+            job.fpga.fractional};
   }
   return {"rotary",
           job.rotary.interpolation_bits,
           job.rotary.max_ab_hz,
           rotary.edges_per_revolution,
           rotary.circumference_um,
-          ratio(job.rotary.gear_encoder_turns, job.rotary.gear_workpiece_turns)};
+          ratio(job.rotary.gear_encoder_turns, job.rotary.gear_workpiece_turns),
+          job.fpga.fractional};
 }
 
 AxisRequest carriage_axis(const Job& job, const Plan& plan) {

@@ -22,6 +22,7 @@ struct AxisRequest {
   Rational travel_um = 0;             ///< in the same time
   /// rotary: encoder turns for one of the workpiece; else: travel of one encoder line. What a remedy may change.
   Rational scale = 1;
+  bool fraction = false;  ///< its channel has the second accumulator: that of the carriage never has
 };
 
 /// The axis the lines are spaced by: the workpiece's, or the stage in flat mode. The axis part of the plan is filled.

@@ -6,18 +6,18 @@ namespace gravure::sync_plan {
 namespace {
 
 /// `revolutions` are those over which the drift adds up.
-void warn_drift(const AbPlan& ab, const char* axis, std::int64_t revolutions, std::vector<std::string>& warnings) {
+void warn_drift(const AbPlan& ab, const char* axis, std::int64_t revolutions, const char* remedy,
+                std::vector<std::string>& warnings) {
   const Rational drift_um = ab.drift_um_per_revolution * Rational(revolutions);
   if (abs(drift_um) <= ab.seam_limit_um) {
     return;
   }
-  warnings.push_back("after " + std::to_string(revolutions) + " revolutions the " + axis + " " +
-                     (drift_um > 0 ? "leads" : "lags") + " by " + number_text(abs(drift_um)) +
-                     " um, more than limits.seam_um = " + number_text(ab.seam_limit_um) + "; reached after " +
-                     to_string(*ab.lines_until_limit) + " lines, in revolution " +
-                     to_string(*ab.revolutions_until_limit) +
-                     " of the job counted from 1; scanner.max_extra_slots lets the planner look for a better line, "
-                     "fpga.fractional = true has no drift at all");
+  warnings.push_back(
+      "after " + std::to_string(revolutions) + " revolutions the " + axis + " " + (drift_um > 0 ? "leads" : "lags") +
+      " by " + number_text(abs(drift_um)) + " um, more than limits.seam_um = " + number_text(ab.seam_limit_um) +
+      "; reached after " + to_string(*ab.lines_until_limit) + " lines, in revolution " +
+      to_string(*ab.revolutions_until_limit) +
+      " of the job counted from 1; scanner.max_extra_slots lets the planner look for a better line, " + remedy);
 }
 
 void warn_pitch(const Job& job, const Plan& plan, std::vector<std::string>& warnings) {
@@ -63,7 +63,7 @@ void warn_encoder(const Plan& plan, std::vector<std::string>& warnings) {
 
 void warn_carriage(const Plan& plan, std::vector<std::string>& warnings) {
   const CarriagePlan& carriage = *plan.carriage;
-  warn_drift(carriage.ab, "carriage", plan.job.revolutions, warnings);
+  warn_drift(carriage.ab, "carriage", plan.job.revolutions, "and so does another carriage.feed_pixels", warnings);
   const Rational step_um = carriage.feed_um / carriage.edges_per_revolution;
   if (step_um > plan.line.pixel_pitch_um) {
     warnings.push_back(
@@ -105,7 +105,8 @@ void warn_scanner(const ScannerSettings& scanner, std::vector<std::string>& warn
 std::vector<std::string> plan_warnings(const Job& job, const Plan& plan) {
   std::vector<std::string> warnings;
   // A stage does not add up over passes: each starts where the one before ended.
-  warn_drift(plan.ab, "axis", plan.mode == Mode::flat ? 1 : plan.job.revolutions, warnings);
+  warn_drift(plan.ab, "axis", plan.mode == Mode::flat ? 1 : plan.job.revolutions,
+             "fpga.fractional = true has no drift at all", warnings);
   warn_pitch(job, plan, warnings);
   warn_directions(job, plan, warnings);
   warn_encoder(plan, warnings);

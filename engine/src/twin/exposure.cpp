@@ -25,6 +25,7 @@ DeviceSetup device_setup(const Plan& plan, std::int64_t first_revolution, std::i
     const AbPlan& carriage = plan.carriage->ab;
     setup.carriage = {carriage.prescaler, carriage.increment, carriage.fraction_num, carriage.fraction_den};
   }
+  setup.clock_multiplier = plan.clock.ticks_per_slot / plan.clock.pulse_divider;
   setup.ticks_per_slot = plan.clock.ticks_per_slot;
   setup.slots_per_line = plan.line.slots;
   setup.window_slots = plan.line.pixels;

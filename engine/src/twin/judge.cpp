@@ -87,7 +87,7 @@ void judge_carriage(const Plan& plan, const AxisCheck& axis, const AxisTally& ta
     report.violations.push_back("the carriage is " + figure(std::fabs(said.seam_end_um)) +
                                 " um off at the end of the job, which exceeds limits.seam_um = " +
                                 to_decimal_string(carriage.ab.seam_limit_um) +
-                                ": set fpga.fractional, or raise scanner.max_extra_slots");
+                                ": raise scanner.max_extra_slots, or change carriage.feed_pixels");
   }
   report.carriage = said;
 }

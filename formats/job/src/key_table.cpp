@@ -97,12 +97,12 @@ constexpr std::array kTable = {
 
     integer("laser", "seed_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.laser.seed_hz = v.integer; }),
-    integer("laser", "pulse_divider", "seed pulses", "1", "1_000_000", kRequired,
+    integer("laser", "pulse_divider", "seed pulses", "1", "65_535", kRequired,
             [](Job& j, const Value& v) { j.laser.pulse_divider = v.integer; }),
     integer("laser", "max_pulse_on_demand_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.laser.max_pulse_on_demand_hz = v.integer; }),
 
-    integer("fpga", "clock_multiplier", "FPGA ticks per seed pulse", "1", "1_000", kRequired,
+    integer("fpga", "clock_multiplier", "FPGA ticks per seed pulse", "1", "16", kRequired,
             [](Job& j, const Value& v) { j.fpga.clock_multiplier = v.integer; }),
     integer("fpga", "counter_bits", "bits", "8", "64", kRequired,
             [](Job& j, const Value& v) { j.fpga.counter_bits = static_cast<int>(v.integer); }),

@@ -43,7 +43,7 @@ max_pulse_on_demand_hz = 16_400_000   # fastest rate at which the gate switches 
 [fpga]
 clock_multiplier = 2              # FPGA clock = 2 * seed
 counter_bits     = 32             # width of the A-B counter
-fractional       = false          # true where the counter has the second accumulator: then nothing drifts, ever
+fractional       = false          # true where the counter has the second accumulator: then the axis never drifts
 max_prescaler    = 4_294_967_295  # the counter may add its increment on every m-th clock, up to this m
 
 [scanner]

@@ -20,6 +20,20 @@ Error refusal(const std::string& what) {
   return {ErrorCode::device, "the board refuses " + what};
 }
 
+/// What every board refuses, and what this one does: its clocks and counters.
+Result<void> check_board(const DeviceSetup& setup) {
+  if (setup.clock_multiplier != AbGenerator::kClockMultiplier) {
+    const std::string own = std::to_string(AbGenerator::kClockMultiplier);
+    return refusal("clock_multiplier = " + std::to_string(setup.clock_multiplier) + ": it has " + own +
+                   " FPGA clocks a seed clock; set fpga.clock_multiplier = " + own);
+  }
+  if (setup.counter_bits != fpga::Synchro::kAxisWidths.bits) {
+    return refusal("counter_bits = " + std::to_string(setup.counter_bits) + ": its counters have " +
+                   std::to_string(fpga::Synchro::kAxisWidths.bits));
+  }
+  return check_setup(setup);
+}
+
 }  // namespace
 
 Result<void> check_backward_delay(std::int64_t later_ticks, std::int64_t clock_multiplier) {
@@ -48,24 +62,16 @@ Result<void> BoardHost::write(const fpga::Register& target, std::uint64_t value)
 }
 
 Result<void> BoardHost::write_axis(const DeviceSetup& setup) {
-  if (setup.counter_bits != fpga::Synchro::kAxisWidths.bits) {
-    return refusal("counter_bits = " + std::to_string(setup.counter_bits) + ": its counters have " +
-                   std::to_string(fpga::Synchro::kAxisWidths.bits));
-  }
-  GRAVURE_CHECK(check_setup(setup));
   GRAVURE_CHECK(write(fpga::kIncrementRegister, setup.increment));
   GRAVURE_CHECK(write(fpga::kPrescalerRegister, setup.prescaler));
   GRAVURE_CHECK(write(fpga::kFractionNumRegister, setup.fraction_num));
   GRAVURE_CHECK(write(fpga::kFractionDenRegister, setup.fraction_den));
-  if (setup.carriage.fraction_num != 0) {
-    return refusal("carriage.fraction_num = " + std::to_string(setup.carriage.fraction_num) +
-                   ": its second axis has no fraction; set fpga.fractional = false");
-  }
   GRAVURE_CHECK(write(fpga::kIncrement1Register, setup.carriage.increment));
   return write(fpga::kPrescaler1Register, setup.carriage.prescaler);
 }
 
 Result<void> BoardHost::start_axis(const DeviceSetup& setup) {
+  GRAVURE_CHECK(check_board(setup));
   constexpr std::uint64_t kEnable = 2U | 8U;
   constexpr std::uint64_t kLoad = 2U | 16U;
   fpga::Synchro::Inputs reset;
@@ -94,15 +100,12 @@ bool BoardHost::is_backward(const LineFrame& frame) const {
 }
 
 Result<void> BoardHost::start_lines(const DeviceSetup& setup, const Lines& lines) {
+  GRAVURE_CHECK(check_board(setup));
   control_ = 1U | 2U | 8U | 16U;  // run slots, enable both axes, lines begin at the tick
   lines_per_revolution_ = setup.lines_per_revolution;
   constexpr std::uint64_t kAcknowledge = 1;
   constexpr std::uint64_t kPositionAndGo = 8U | 64U;
   const auto bytes = static_cast<std::uint64_t>((setup.window_slots + 7) / 8);
-  if (setup.ticks_per_slot % static_cast<std::int64_t>(kSeedClock) != 0) {
-    return refusal("ticks_per_slot = " + std::to_string(setup.ticks_per_slot) + ": a slot lasts whole seed clocks of " +
-                   std::to_string(kSeedClock) + " ticks");
-  }
   const auto seeds_per_slot = static_cast<std::uint64_t>(setup.ticks_per_slot) / kSeedClock;
   line_seeds_ = static_cast<std::uint64_t>(setup.slots_per_line) * seeds_per_slot;
   if (2 * bytes > std::uint64_t{1} << static_cast<unsigned>(fifo_bits_)) {

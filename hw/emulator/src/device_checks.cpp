@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "gravure/core/plan.hpp"
 #include "gravure/emulator/emulated_device.hpp"
 #include "gravure/fpga/register_map.hpp"
 
@@ -17,7 +18,9 @@ constexpr std::int64_t most_of(const fpga::Register& one) {
   return static_cast<std::int64_t>(fpga::largest(one));
 }
 
-constexpr std::int64_t kMaxTicksPerSlot = most_of(fpga::kSeedsPerSlotRegister) * fpga::kClockMultiplierRange.high;
+static_assert(kMostSeedsPerSlot == most_of(fpga::kSeedsPerSlotRegister));
+static_assert(kMostClockMultiplier == fpga::kClockMultiplierRange.high);
+static_assert(kMostSlotsPerLine == most_of(fpga::kSlotsPerLineRegister));
 
 /// Collects one line for each refused field.
 class Refusals {
@@ -74,10 +77,26 @@ void check_counters(const DeviceSetup& setup, Refusals& refusals) {
   refusals.range("counter_bits", setup.counter_bits, fpga::kCounterBitsRange.low, fpga::kCounterBitsRange.high);
   check_counter("", ab_registers_of(setup), refusals);
   check_counter("carriage.", carriage_registers_of(setup), refusals);
+  if (setup.carriage.fraction_num != 0) {
+    refusals.add("carriage.fraction_num", std::to_string(setup.carriage.fraction_num), "0",
+                 "the second axis has no fraction: plan the job again");
+  }
+}
+
+/// A slot lasts whole seed pulses.
+void check_slot(const DeviceSetup& setup, Refusals& refusals) {
+  const std::int64_t multiplier = setup.clock_multiplier;
+  refusals.range("clock_multiplier", multiplier, fpga::kClockMultiplierRange.low, fpga::kClockMultiplierRange.high);
+  if (multiplier >= 1 && setup.ticks_per_slot % multiplier != 0) {
+    refusals.add("ticks_per_slot", std::to_string(setup.ticks_per_slot),
+                 "multiples of clock_multiplier = " + std::to_string(multiplier));
+  } else if (multiplier >= 1) {
+    refusals.range("seeds_per_slot", setup.ticks_per_slot / multiplier, 1, most_of(fpga::kSeedsPerSlotRegister));
+  }
 }
 
 void check_line(const DeviceSetup& setup, Refusals& refusals) {
-  refusals.range("ticks_per_slot", setup.ticks_per_slot, 1, kMaxTicksPerSlot);
+  check_slot(setup, refusals);
   refusals.range("slots_per_line", setup.slots_per_line, 1, most_of(fpga::kSlotsPerLineRegister));
   if (setup.window_slots > setup.slots_per_line && setup.slots_per_line >= 1) {
     refusals.add("window_slots", std::to_string(setup.window_slots), "0 to " + std::to_string(setup.slots_per_line),

@@ -60,7 +60,8 @@ TEST(EmulatedDeviceAxis, CarriageIsTheSecondChannel) {
   std::mt19937_64 rng(2);
   for (int trial = 0; trial < 50; ++trial) {
     DeviceSetup setup = random_setup(rng);
-    const DeviceSetup other = random_setup(rng);
+    DeviceSetup other = random_setup(rng);
+    other.fraction_num = 0;
     setup.counter_bits = other.counter_bits;
     setup.increment = 1;
     setup.carriage = {other.prescaler, other.increment, other.fraction_num, other.fraction_den};
@@ -100,6 +101,9 @@ TEST(EmulatedDeviceAxis, CarriageRegistersAreChecked) {
   test::expect_refused(device.configure(setup), {"the board refuses carriage.increment = 16385"});
   setup.carriage = {0, 5, 0, 1};
   test::expect_refused(device.configure(setup), {"carriage.prescaler = 0"});
+  setup.carriage = {1, 5, 1, 2};
+  test::expect_refused(device.configure(setup),
+                       {"carriage.fraction_num = 1: allowed is 0", "second axis has no fraction"});
 }
 
 void expect_same(const AxisState& a, const AxisState& b) {

@@ -19,6 +19,7 @@ DeviceSetup board_setup() {
   setup.counter_bits = 32;
   setup.increment = 700'000'000;
   setup.slots_per_line = 120;
+  setup.clock_multiplier = 2;
   setup.ticks_per_slot = 4;
   return setup;
 }
@@ -141,10 +142,17 @@ TEST_F(BoardHostOnModel, RefusesWhatDoesNotFitTheBoard) {
     test::expect_refused(host_.start_lines(setup, {.slots_per_microvector = 5}), {"the board refuses", part});
   };
   refused([](DeviceSetup& setup) { setup.counter_bits = 31; }, "counter_bits = 31");
+  refused([](DeviceSetup& setup) { setup.clock_multiplier = 1; }, "clock_multiplier = 1: it has 2 FPGA clocks");
+  refused([](DeviceSetup& setup) { setup.clock_multiplier = 4; }, "set fpga.clock_multiplier = 2");
   refused([](DeviceSetup& setup) { setup.fraction_den = std::uint64_t{1} << 34U; }, "fraction_den = 17179869184");
   refused([](DeviceSetup& setup) { setup.increment = (1U << 30U) + 1; }, "increment = 1073741825");
-  refused([](DeviceSetup& setup) { setup.carriage = {1, 5, 1, 2}; }, "carriage.fraction_num = 1: its second axis");
-  refused([](DeviceSetup& setup) { setup.ticks_per_slot = 3; }, "ticks_per_slot = 3");
+  refused(
+      [](DeviceSetup& setup) {
+        setup.carriage = {1, 5, 1, 2};
+      },
+      "carriage.fraction_num = 1: allowed is 0; the second axis has no fraction");
+  refused([](DeviceSetup& setup) { setup.ticks_per_slot = 3; }, "ticks_per_slot = 3: allowed is multiples");
+  refused([](DeviceSetup& setup) { setup.ticks_per_slot = 131'072; }, "seeds_per_slot = 65536: allowed is 1 to 65535");
   refused([](DeviceSetup& setup) { setup.slots_per_line = 16'777'216; }, "slots_per_line = 16777216");
   refused([](DeviceSetup& setup) { setup.window_slots = setup.slots_per_line = 20'000; }, "FIFO of 4096 bytes");
   refused([](DeviceSetup& setup) { setup.slots_per_line = 20; }, "takes longer");

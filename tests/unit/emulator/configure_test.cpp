@@ -39,7 +39,9 @@ TEST(EmulatedDeviceConfigure, TakesTheExtremes) {
   });
   takes([](DeviceSetup& s) { s.revolutions = 4'294'967'296; });
   takes([](DeviceSetup& s) { s.slots_per_line = 16'777'215, s.window_slots = 262'144; });
-  takes([](DeviceSetup& s) { s.ticks_per_slot = 1'048'560; });
+  takes([](DeviceSetup& s) { s.ticks_per_slot = 65'535; });
+  takes([](DeviceSetup& s) { s.clock_multiplier = 2, s.ticks_per_slot = 131'070; });
+  takes([](DeviceSetup& s) { s.clock_multiplier = 16, s.ticks_per_slot = 1'048'560; });
   takes([](DeviceSetup& s) { s.first_revolution = 2, s.first_line = 3; });
 }
 
@@ -59,9 +61,15 @@ TEST(EmulatedDeviceConfigure, RefusesCounterRegisters) {
 }
 
 TEST(EmulatedDeviceConfigure, RefusesLineRegisters) {
-  expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = 0; }, {"ticks_per_slot = 0", "1 to 1048560"});
-  expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = -3; }, {"ticks_per_slot = -3"});
-  expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = 1'048'561; }, {"ticks_per_slot = 1048561"});
+  expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = 0; }, {"seeds_per_slot = 0", "1 to 65535"});
+  expect_refused_with([](DeviceSetup& s) { s.ticks_per_slot = -3; }, {"seeds_per_slot = -3"});
+  expect_refused_with([](DeviceSetup& s) { s.clock_multiplier = 2, s.ticks_per_slot = 131'072; },
+                      {"seeds_per_slot = 65536", "1 to 65535"});
+  expect_refused_with([](DeviceSetup& s) { s.clock_multiplier = 2, s.ticks_per_slot = 5; },
+                      {"ticks_per_slot = 5", "multiples of clock_multiplier = 2"});
+  expect_refused_with([](DeviceSetup& s) { s.clock_multiplier = 0; }, {"clock_multiplier = 0", "1 to 16"});
+  expect_refused_with([](DeviceSetup& s) { s.clock_multiplier = 17, s.ticks_per_slot = 17; },
+                      {"clock_multiplier = 17", "1 to 16"});
   expect_refused_with([](DeviceSetup& s) { s.slots_per_line = 0; }, {"slots_per_line = 0", "1 to 16777215"});
   expect_refused_with([](DeviceSetup& s) { s.slots_per_line = 16'777'216; }, {"slots_per_line = 16777216"});
   expect_refused_with([](DeviceSetup& s) { s.slots_per_line = -1; }, {"slots_per_line = -1"});
@@ -88,7 +96,7 @@ TEST(EmulatedDeviceConfigure, RefusesJobRegisters) {
 
 TEST(EmulatedDeviceConfigure, SaysEveryViolationOnce) {
   expect_refused_with([](DeviceSetup& s) { s.prescaler = 0, s.ticks_per_slot = 0, s.revolutions = 0; },
-                      {"prescaler = 0", "ticks_per_slot = 0", "\nthe board refuses revolutions = 0"});
+                      {"prescaler = 0", "seeds_per_slot = 0", "\nthe board refuses revolutions = 0"});
 }
 
 TEST(EmulatedDeviceConfigure, LeavesTheMachineAsItWasWhenRefused) {

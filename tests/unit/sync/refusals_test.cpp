@@ -32,8 +32,12 @@ constexpr ErrorCode kArgument = ErrorCode::bad_argument;
 const Refusal kRefusals[] = {
     {"SeedOfZero", [](Job& j) { j.laser.seed_hz = 0; }, kRange, "laser.seed_hz = 0: must be 1 to"},
     {"DividerOfZero", [](Job& j) { j.laser.pulse_divider = 0; }, kRange, "laser.pulse_divider = 0: must be 1 to"},
+    {"DividerBeyondTheRegister", [](Job& j) { j.laser.pulse_divider = 65'536; }, kRange,
+     "laser.pulse_divider = 65536: must be 1 to 65535"},
     {"GateOfZero", [](Job& j) { j.laser.max_pulse_on_demand_hz = 0; }, kRange, "laser.max_pulse_on_demand_hz = 0"},
     {"MultiplierOfZero", [](Job& j) { j.fpga.clock_multiplier = 0; }, kRange, "fpga.clock_multiplier = 0"},
+    {"MultiplierOfNoBoard", [](Job& j) { j.fpga.clock_multiplier = 17; }, kRange,
+     "fpga.clock_multiplier = 17: must be 1 to 16"},
     {"SevenCounterBits", [](Job& j) { j.fpga.counter_bits = 7; }, kRange, "fpga.counter_bits = 7: must be 8 to 64"},
     {"SixtyFiveCounterBits", [](Job& j) { j.fpga.counter_bits = 65; }, kRange, "fpga.counter_bits = 65"},
     {"PrescalerOfZero", [](Job& j) { j.fpga.max_prescaler = 0; }, kRange, "fpga.max_prescaler = 0: must be 1 to"},
@@ -109,7 +113,7 @@ const Refusal kRefusals[] = {
      "rotary.interpolation_bits <= 17"},
     {"FrequencyThatNoKeyAloneBringsDown",
      [](Job& j) {
-       j.laser.pulse_divider = 1'000'000;
+       j.laser.pulse_divider = 65'535;
        j.rotary.interpolation_bits = 18;
        j.rotary.encoder_lines = 1'000'000'000;
        j.rotary.max_ab_hz = 1;
@@ -130,18 +134,9 @@ const Refusal kRefusals[] = {
        j.rotary.interpolation_bits = 0;
        j.rotary.encoder_lines = 1;
        j.rotary.gear_workpiece_turns = 999'983;
-       j.laser.pulse_divider = 999'999'937;
+       j.laser.pulse_divider = 65'521;
      },
-     kRange, "at most 2^64 - 1 fits the second accumulator"},
-    {"TicksOfALine",
-     [](Job& j) {
-       j.laser.pulse_divider = 1'000'000'000;
-       j.fpga.clock_multiplier = 1'000'000;
-     },
-     kRange,
-     "image.pixels_per_line = 1000000: a line takes 1000409000000000000000 FPGA ticks, beyond 64-bit integers; at most "
-     "9223 slots",
-     1'000'000},
+     kRange, "at most 2^64 - 1 fits the second accumulator", 30'000},
     {"SlotsOfALine", [](Job&) {}, kRange,
      "image.pixels_per_line = 20000000: a line takes 20000409 slots with turn_slots and max_extra_slots; the board "
      "counts "
@@ -149,12 +144,14 @@ const Refusal kRefusals[] = {
      20'000'000},
     {"TicksOfARevolution",
      [](Job& j) {
-       j.laser.pulse_divider = 1'000'000'000;
-       j.fpga.clock_multiplier = 1000;
+       j.laser.pulse_divider = 65'535;
+       j.fpga.clock_multiplier = 16;
+       j.rotary.line_pitch_um = ratio(1, 1000);
      },
      kRange,
-     "rotary.line_pitch_um = 8: a revolution takes 107454501000000000000 FPGA ticks, beyond 64-bit integers; at "
-     "most 2359 lines per revolution fit"},
+     "rotary.line_pitch_um = 0.001: a revolution takes 230684699228753905440 FPGA ticks, beyond 64-bit integers; at "
+     "most 8792631 lines per revolution fit",
+     1'000'000},
     {"TicksOfTheJob", [](Job&) {}, kRange,
      "image.revolutions = 10000000000: the job takes 88112690820000000000 FPGA ticks, beyond 64-bit integers; at most "
      "1046769",

@@ -9,8 +9,12 @@
 
 namespace gravure {
 
+/// What a board takes at most (docs/registers.md: seeds_per_slot, clock_multiplier).
+inline constexpr std::int64_t kMostSeedsPerSlot = 65'535;
+inline constexpr std::int64_t kMostClockMultiplier = 16;
+
 /// The second A-B channel, which drives the carriage of helical jobs; its counter is as wide as the first. It stands
-/// still with an increment of 0.
+/// still with an increment of 0. Boards have a fraction for the first channel alone: here only 0/1 is taken.
 struct CarriageSetup {
   std::uint64_t prescaler = 1;
   std::uint64_t increment = 0;
@@ -26,9 +30,10 @@ struct DeviceSetup {
   std::uint64_t fraction_num = 0;
   std::uint64_t fraction_den = 1;
   CarriageSetup carriage = {};
-  std::int64_t ticks_per_slot = 1;
-  std::int64_t slots_per_line = 1;  ///< np
-  std::int64_t window_slots = 0;    ///< pixels per line; the gate stays dark outside the window
+  std::int64_t clock_multiplier = 1;  ///< j: FPGA ticks per seed pulse
+  std::int64_t ticks_per_slot = 1;    ///< a whole multiple of j
+  std::int64_t slots_per_line = 1;    ///< np
+  std::int64_t window_slots = 0;      ///< pixels per line; the gate stays dark outside the window
   std::int64_t lines_per_revolution = 1;
   std::int64_t revolutions = 1;
   std::int64_t first_revolution = 0;  ///< start here, with the axis where the program has it at that tick

@@ -19,8 +19,7 @@ inline constexpr std::int64_t kMaxWindowSlots =
 
 /// A board without the board: the bit-exact FPGA model behind DeviceLink. It refuses what a board would refuse, by the
 /// register map (docs/registers.md): every width and range is taken from there. Where boards may differ (counter_bits,
-/// clock_multiplier, fifo_bits) it is the board that the setup asks for, within the range of that register; its
-/// second A-B channel (the carriage) has a fraction, too, which the Verilog as it is built for the HX8K leaves out.
+/// clock_multiplier, fifo_bits) it is the board that the setup asks for, within the range of that register.
 ///
 /// The machine never waits: every send() takes exactly one line time, in which either the frame's line runs or, where
 /// the frame is refused or a fault stands, a dark one. So tick and axis go on through a fault as they do on a machine.
