@@ -138,6 +138,25 @@ Result<Mistakes> mistakes_of(const EmulateOptions& options, const DeviceSetup& s
   return mistakes;
 }
 
+/// Refuses what was planned for lines after the last one that is run.
+Result<void> check_run(const Mistakes& mistakes, std::int64_t last_line) {
+  const auto check = [last_line](const char* option, std::int64_t ordinal) {
+    return ordinal <= last_line
+               ? Result<void>()
+               : Error{ErrorCode::out_of_range,
+                       fmt::format("{} line {} (over the whole job): the window ends with line {}, so it is never run; "
+                                   "give a line up to it, or a later --to",
+                                   option, ordinal, last_line)};
+  };
+  for (const PlannedFault& fault : mistakes.faults) {
+    GRAVURE_CHECK(check("--fault", fault.ordinal));
+  }
+  for (const std::int64_t ordinal : mistakes.acknowledgements) {
+    GRAVURE_CHECK(check("--acknowledge", ordinal));
+  }
+  return {};
+}
+
 /// The lines a window touches, and those from the first fault on, which may reach into it.
 Lines lines_of(const Plan& plan, TickWindow window, const Mistakes& mistakes) {
   const std::int64_t most = plan.job.revolutions * plan.rotary.lines_per_revolution - 1;
@@ -342,6 +361,7 @@ Result<int> run_program(const EmulateOptions& options, const Command& command) {
   const std::uint64_t end = static_cast<std::uint64_t>(plan.job.ticks);
   const bool windowed = options.from || options.to;
   run.lines = lines_of(plan, windowed ? run.window : TickWindow{0, end}, mistakes);
+  GRAVURE_CHECK(check_run(mistakes, run.lines.last));
   const DeviceSetup setup = device_setup(plan, run.lines.first / per_revolution, run.lines.first % per_revolution);
 
   std::unique_ptr<WaveFile> file;

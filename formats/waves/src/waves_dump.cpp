@@ -124,7 +124,7 @@ Result<void> WaveDump::change(std::string& out, std::uint64_t tick, std::size_t 
 }
 
 Result<void> WaveDump::end(std::string& out, std::uint64_t last) {
-  return append_time(out, last);
+  return last == tick_ ? Result<void>() : append_time(out, last);  // one time is never given twice
 }
 
 }  // namespace gravure::formats

@@ -82,6 +82,26 @@ Result<PlannedFault> parse_fault(std::string_view text, const DeviceSetup& setup
   return PlannedFault{kind->second, ordinal};
 }
 
+namespace {
+
+/// Each of the sorted acknowledgements must follow a fault that none before it acknowledged.
+Result<void> check_acknowledgements(const std::vector<PlannedFault>& faults,
+                                    const std::vector<std::int64_t>& acknowledgements) {
+  std::int64_t from = 0;
+  for (const std::int64_t line : acknowledgements) {
+    if (std::none_of(faults.begin(), faults.end(),
+                     [&](const PlannedFault& fault) { return fault.ordinal >= from && fault.ordinal < line; })) {
+      return Error{ErrorCode::bad_argument, "the acknowledgement before line " + std::to_string(line) +
+                                                " acknowledges nothing: no fault stands there; plan one at an earlier "
+                                                "line, or leave it out"};
+    }
+    from = line;
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<FaultyHost> FaultyHost::make(EmulatedDevice& device, std::vector<PlannedFault> faults,
                                     std::vector<std::int64_t> acknowledgements) {
   std::sort(faults.begin(), faults.end(),
@@ -95,6 +115,7 @@ Result<FaultyHost> FaultyHost::make(EmulatedDevice& device, std::vector<PlannedF
                                               "; give each line one at most"};
   }
   std::sort(acknowledgements.begin(), acknowledgements.end());
+  GRAVURE_CHECK(check_acknowledgements(faults, acknowledgements));
   return FaultyHost(device, std::move(faults), std::move(acknowledgements));
 }
 

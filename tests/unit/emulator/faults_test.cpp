@@ -91,7 +91,7 @@ TEST(FaultyHost, KeepsTheFirstOfTwoFaults) {
 }
 
 TEST(FaultyHost, LeavesAGoodJobAlone) {
-  const Outcome seen = run_job({}, {4});
+  const Outcome seen = run_job({}, {});
   EXPECT_TRUE(seen.dark.empty());
   EXPECT_EQ(seen.status.lines_executed, 12);
 }
@@ -109,6 +109,19 @@ TEST(FaultyHost, RefusesTwoFaultsAtOneLine) {
   const auto host = FaultyHost::make(device, {{FaultKind::underrun, 9}, {FaultKind::lost, 9}}, {});
   ASSERT_FALSE(host);
   EXPECT_NE(host.error().message.find("line 9"), std::string::npos);
+}
+
+TEST(FaultyHost, RefusesAnAcknowledgementOfNothing) {
+  EmulatedDevice device;
+  const std::vector<PlannedFault> faults = {{FaultKind::underrun, 4}, {FaultKind::lost, 8}};
+  EXPECT_TRUE(FaultyHost::make(device, faults, {9, 5}));
+  EXPECT_TRUE(FaultyHost::make(device, faults, {10}));
+  for (const std::vector<std::int64_t>& useless : std::vector<std::vector<std::int64_t>>{{4}, {5, 5}, {5, 8}, {2, 9}}) {
+    const auto host = FaultyHost::make(device, faults, useless);
+    ASSERT_FALSE(host);
+    EXPECT_EQ(host.error().code, ErrorCode::bad_argument);
+    EXPECT_NE(host.error().message.find("acknowledges nothing"), std::string::npos);
+  }
 }
 
 TEST(FaultyHost, HitsTheLinesOfAJobThatStartsLater) {

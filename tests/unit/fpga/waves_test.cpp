@@ -66,7 +66,6 @@ $end
 0!
 #36
 1"
-#36
 )");
 }
 
@@ -126,6 +125,20 @@ TEST(WaveDump, WritesVectorsAndSharesATimeBetweenSignals) {
   ASSERT_TRUE(dump.value().change(vcd, 11, 1, 10));
   ASSERT_TRUE(dump.value().end(vcd, 12));
   EXPECT_EQ(vcd.substr(head), "1!\n#9\n0!\nb1010 \"\n#12\n");
+}
+
+TEST(WaveDump, GivesNoTimeTwiceWhereTheLastChangeIsTheEnd) {
+  auto dump = WaveDump::make({}, "machine", {{.name = "gate"}});
+  ASSERT_TRUE(dump);
+  const std::array<std::uint64_t, 1> first = {0};
+  std::string vcd;
+  ASSERT_TRUE(dump.value().begin(vcd, 5, first));
+  const std::size_t head = vcd.size();
+  ASSERT_TRUE(dump.value().end(vcd, 5));
+  EXPECT_EQ(vcd.substr(head), "");
+  ASSERT_TRUE(dump.value().change(vcd, 9, 0, 1));
+  ASSERT_TRUE(dump.value().end(vcd, 9));
+  EXPECT_EQ(vcd.substr(head), "#9\n1!\n");
 }
 
 TEST(WaveDump, RefusesSignalsThatViewersCannotShow) {

@@ -47,7 +47,8 @@ struct DarkLines {
 /// line dark from the fault on, until the host acknowledges.
 class FaultyHost final : public DeviceLink {
  public:
-  /// bad_argument where two faults hit one line. The device must outlive the host. Before a line of `acknowledgements`
+  /// bad_argument where two faults hit one line, or an acknowledgement comes where no fault stands. The device must
+  /// outlive the host. Before a line of `acknowledgements`
   /// the standing fault is acknowledged.
   static Result<FaultyHost> make(EmulatedDevice& device, std::vector<PlannedFault> faults,
                                  std::vector<std::int64_t> acknowledgements);
