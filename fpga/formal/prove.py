@@ -85,7 +85,7 @@ def prove(proof, rtl, folder, timeout):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--rtl", type=pathlib.Path, default=HERE.parent / "rtl")
-    parser.add_argument("--timeout", type=int, default=120)
+    parser.add_argument("--timeout", type=int, default=300)
     parser.add_argument("names", nargs="*")
     arguments = parser.parse_args()
     missing = [tool for tool in ("yosys", "yosys-smtbmc", "z3", "berkeley-abc") if shutil.which(tool) is None]

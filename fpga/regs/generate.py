@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the register map of host, board and documentation from registers.txt and blocks.txt.
+"""Makes register map and latencies of host, board and documentation from registers.txt, blocks.txt and latencies.txt.
 
-usage: generate.py            writes the four files
+usage: generate.py            writes the files
        generate.py --check    writes nothing; exit status 1 and the file's name where one is stale"""
 
 import pathlib
@@ -43,6 +43,23 @@ def read_blocks():
             name, kind, version, size, meaning = [cell.strip() for cell in line.split("|")]
             blocks.append((name, int(kind) << 24 | int(version) << 16 | int(size), int(size), meaning))
     return blocks
+
+
+def read_latencies():
+    """(name, clocks as a number or a sum of names, clock, from and to)."""
+    latencies = []
+    for line in (HERE / "latencies.txt").read_text().splitlines():
+        if line.strip() and not line.startswith("#"):
+            latencies.append([cell.strip() for cell in line.split("|")])
+    return latencies
+
+
+def clocks_of(latencies):
+    """The number of clocks of every name."""
+    values = {}
+    for name, clocks, _, _ in latencies:
+        values[name] = sum(values[term] if term in values else int(term) for term in clocks.split(" + "))
+    return values
 
 
 def not_zero(registers):
@@ -145,7 +162,27 @@ def make_rom(blocks):
     return "\n".join(text) + "\n"
 
 
-def make_page(registers, blocks):
+def make_latency_header(latencies):
+    text = ["#pragma once", "", "// clang-format off", "// Made by fpga/regs/generate.py from latencies.txt; change that file.", "",
+            "#include <array>", "#include <string_view>", "", "namespace gravure::fpga {", "",
+            "// Clocks from the one before which an input stands to the one after which its effect shows, both included; of the",
+            "// A-B generator from just after the one that takes it.", ""]
+    for name, clocks, clock, path in latencies:
+        terms = " + ".join(camel(term) if not term.isdigit() else term for term in clocks.split(" + "))
+        text += [f"/// {clock} clocks: {path}.", f"inline constexpr int {camel(name)} = {terms};"]
+    text += ["", "struct Latency {", "  std::string_view name;  ///< as latencies.txt and the timing tables write it", "  int clocks;", "};",
+             f"inline constexpr std::array<Latency, {len(latencies)}> kLatencies{{{{"]
+    text += [f"    {{\"{latency[0]}\", {camel(latency[0])}}}," for latency in latencies]
+    return "\n".join(text + ["}};", "", "}  // namespace gravure::fpga"]) + "\n"
+
+
+def make_latency_verilog(latencies):
+    text = ["// Made by fpga/regs/generate.py from latencies.txt; change that file."]
+    text += [f"localparam {name} = {clocks};  // {clock} clocks: {path}" for name, clocks, clock, path in latencies]
+    return "\n".join(text) + "\n"
+
+
+def make_page(registers, blocks, latencies):
     text = ["# Registers of the board", "",
             "Made by `fpga/regs/generate.py` from `registers.txt` and `blocks.txt` beside it. Addresses count 32-bit words.",
             "Values of more than 32 bits take two words, low word first; writing the high word takes both. `ro` is read only,",
@@ -161,15 +198,23 @@ def make_page(registers, blocks):
              "last. The host reads it when it opens the board.", "", "| address | word | block | size |", "|---|---|---|---|"]
     text += [f"| {0x80 + number:#04x} | {word:#010x} | {name} | {size} {meaning} |"
              for number, (name, word, size, meaning) in enumerate(blocks)]
+    text += ["", "## Latencies", "", "From `latencies.txt`; model and Verilog take them from there and are measured against them by the",
+             "[timing tables](timing.md). A value that stands before clock c shows just after clock c + latency - 1. Those of the A-B generator",
+             "(the last four) count from just after the clock that takes the input.", "", "| name | clocks | clock | from, to |",
+             "|---|---|---|---|"]
+    values = clocks_of(latencies)
+    text += [f"| `{name}` | {values[name]} | {clock} | {path} |" for name, _, clock, path in latencies]
     return "\n".join(text) + "\n"
 
 
 def main():
-    registers, blocks = read_registers(), read_blocks()
+    registers, blocks, latencies = read_registers(), read_blocks(), read_latencies()
     made = {ROOT / "fpga/model/include/gravure/fpga/register_map.hpp": make_header(registers, blocks),
             ROOT / "fpga/rtl/registers.vh": make_verilog(registers),
             ROOT / "fpga/rtl/descriptors.vh": make_rom(blocks),
-            ROOT / "docs/registers.md": make_page(registers, blocks)}
+            ROOT / "fpga/model/include/gravure/fpga/latencies.hpp": make_latency_header(latencies),
+            ROOT / "fpga/rtl/latencies.vh": make_latency_verilog(latencies),
+            ROOT / "docs/registers.md": make_page(registers, blocks, latencies)}
     stale = [path for path, text in made.items() if not path.exists() or path.read_text() != text]
     for path in stale:
         print(f"{path.relative_to(ROOT)}: {'stale; run fpga/regs/generate.py' if '--check' in sys.argv else 'written'}")

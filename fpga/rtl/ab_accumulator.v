@@ -8,8 +8,8 @@
 // beat              turns over with every seed clock; tells the first FPGA clock from the second
 // clear             sets the counter to 0
 //
-// Latency: from the seed clock that shows a word to the pins 3 + BITS / SEGMENT FPGA clocks for its first bit
-// (WORD_LATENCY), one more for its second. Reset: by clear, for one seed clock or longer.
+// Latency: from the seed clock that shows a word to the pins WORD_STAGES + BITS / SEGMENT FPGA clocks for its
+// first bit, one more for its second. Reset: by clear, for one seed clock or longer.
 `default_nettype none
 module ab_accumulator #(
     parameter BITS = 32,

@@ -5,8 +5,8 @@
 // All inputs, `refused` and `busy` belong to clk; ab_pacer says what they mean.
 //
 // Latency in FPGA clocks, with S = BITS / SEGMENT: what is known of the counter just after clock c of a load shows on the
-// pins c + 18 + S clocks after the load (LOAD_LATENCY); enable acts 9 + S clocks later (ENABLE_LATENCY), a new increment
-// 5 + S (INCREMENT_LATENCY). The pins are flip-flops. Reset (one clk or longer): all 0, standing.
+// pins c + 2 LOAD_CLOCKS + WORD_STAGES + S - 1 clocks after the load; enable acts 2 DUE_LATENCY + WORD_STAGES + S clocks
+// later, a new increment 2 STEP_LATENCY + WORD_STAGES + S. The pins are flip-flops. Reset (one clk or longer): all 0, standing.
 `default_nettype none
 module ab_generator #(
     parameter BITS = 32,

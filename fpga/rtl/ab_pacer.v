@@ -14,8 +14,8 @@
 //                 no proper one (or any, with FRACTION 0), or with prescaler 0, changes nothing
 // due, carry      bit 0 the first FPGA clock, bit 1 the second; with them goes `step`, the increment
 //
-// Latency in seed clocks, from the one that takes an input to the one after which the output shows: enable to due 3, load
-// to the due of its clock 1 8 (LOAD_CLOCKS), load_increment to step 1. Reset: standing, increment 0.
+// Latency in seed clocks, from the one that takes an input to the one after which the output shows: enable to due
+// DUE_LATENCY, load to the due of its clock 1 LOAD_CLOCKS, load_increment to step STEP_LATENCY. Reset: standing, increment 0.
 `default_nettype none
 module ab_pacer #(
     parameter BITS = 32,
@@ -41,10 +41,13 @@ module ab_pacer #(
   localparam P = PRESCALER_BITS;
   localparam F = FRACTION_BITS;
   localparam [P-1:0] TWO = 2;
+  /* verilator lint_off UNUSEDPARAM */
+  `include "latencies.vh"
+  /* verilator lint_on UNUSEDPARAM */
 
-  // A load passes eight stages. 0: taken aside; 1, 2: checked; 3..7: put in force, each at the stage that uses it, behind
+  // A load passes LOAD_CLOCKS stages. 0: taken aside; 1, 2: checked; from 3 on: put in force, each at the stage that uses it, behind
   // the last word of the registers before.
-  reg [7:0] loading;
+  reg [LOAD_CLOCKS-1:0] loading;
   assign busy = loading != 0;
   reg [BITS-1:0] new_step;
   reg [P-1:0] new_period;
@@ -75,7 +78,7 @@ module ab_pacer #(
 
   always @(posedge clk) begin
     if (rst) begin
-      loading <= 8'd0;
+      loading <= 0;
       left <= 1;
       period <= 1;
       period_less <= 0;
@@ -93,7 +96,7 @@ module ab_pacer #(
       refused <= 1'b0;
       new_ok <= 1'b0;
     end else begin
-      loading <= {loading[6:3], loading[2] && new_ok, loading[1:0], load && !busy};
+      loading <= {loading[LOAD_CLOCKS-2:3], loading[2] && new_ok, loading[1:0], load && !busy};
       new_ok <= !new_over && !new_zero && fraction_ok && (fraction_off || !new_quarter);
 
       pace_due <= paced;
@@ -113,11 +116,11 @@ module ab_pacer #(
       next_step_ok <= load_increment && !load && !busy && !over && !(quarter && has_fraction);
       next_step_bad <= (load_increment && !load && !busy && (over || (quarter && has_fraction))) ||
                        (busy && (load || load_increment));
-      if (loading[7]) begin
+      if (loading[LOAD_CLOCKS-1]) begin
         step <= new_step;
         has_fraction <= !fraction_off;
       end else if (next_step_ok) step <= new_step;
-      if (loading[6]) word_fraction <= !fraction_off;
+      if (loading[LOAD_CLOCKS-2]) word_fraction <= !fraction_off;
       if (loading[2]) refused <= !new_ok;
       if (next_step_ok) refused <= 1'b0;
       if (next_step_bad) refused <= 1'b1;
@@ -194,6 +197,9 @@ module ab_pacer #(
       assign carried = 2'd0;
       always @(posedge clk) if (load && !busy) no_den <= fraction_den == 0;
       always @(posedge clk) num_zero <= new_num == 0 && !no_den;
+`ifdef FORMAL
+      always @(*) if (valid && busy) assert (no_den == (ref_new_den == 0));
+`endif
     end
   endgenerate
 `ifdef FORMAL
@@ -213,22 +219,21 @@ module ab_pacer #(
   wire [F:0] ref_acc_1 = ref_carry_1 ? ref_sum_1 - {1'b0, ref_den} : ref_sum_1;
   reg [F-1:0] ref_new_den;
   always @(posedge clk) if (load && !busy) ref_new_den <= fraction_den;
-  reg [3:0] ref_0, ref_1, ref_2, ref_3;
+  reg [3:0] ref_word[0:DUE_LATENCY];  // what the output shows that many clocks later
+  integer stage;
   reg valid = 1'b0;
   initial assume (rst);
   always @(posedge clk) begin
     valid <= 1'b1;
-    ref_0 <= {ref_carry_1, ref_carry_0, ref_due_1, ref_due_0};
-    ref_1 <= ref_0;
-    ref_2 <= ref_1;
-    ref_3 <= ref_2;
+    ref_word[0] <= {ref_carry_1, ref_carry_0, ref_due_1, ref_due_0};
+    for (stage = 1; stage <= DUE_LATENCY; stage = stage + 1) ref_word[stage] <= ref_word[stage-1];
     if (rst) begin
       ref_phase <= 0;
       ref_period <= 1;
       ref_acc <= 0;
       ref_num <= 0;
       ref_den <= 1;
-      {ref_0, ref_1, ref_2, ref_3} <= 16'd0;
+      for (stage = 0; stage <= DUE_LATENCY; stage = stage + 1) ref_word[stage] <= 4'd0;
     end else if (loading[3]) begin
       ref_phase <= 0;
       ref_period <= new_period;
@@ -247,16 +252,16 @@ module ab_pacer #(
     // What makes that inductive: a load is checked before it is in force, and no fraction is added without one.
     assert ((loading & (loading - 1'b1)) == 0);
     if (busy) assert (new_over == (new_step > QUARTER) && new_quarter == (new_step == QUARTER));
-    if (loading[7:1] != 0) assert (fraction_off == (new_num == 0));
+    if (loading[LOAD_CLOCKS-1:1] != 0) assert (fraction_off == (new_num == 0 && (FRACTION != 0 || ref_new_den != 0)));
     if (loading[2]) assert (!new_ok || (!new_over && (fraction_off || !new_quarter)));
-    if (loading[7:3] != 0) assert (!new_over && (fraction_off || !new_quarter));
+    if (loading[LOAD_CLOCKS-1:3] != 0) assert (!new_over && (fraction_off || !new_quarter));
     if (has_fraction) assert (step < QUARTER);
     if (!has_fraction) assert (carry == 0);
-    if (next_step_ok) assert (new_step <= QUARTER && !(has_fraction && new_step == QUARTER) && loading[7:1] == 0);
-    if (!loading[7]) assert (word_fraction == has_fraction);
-    if (loading[7]) assert (word_fraction == !fraction_off);
+    if (next_step_ok) assert (new_step <= QUARTER && !(has_fraction && new_step == QUARTER) && loading[LOAD_CLOCKS-1:1] == 0);
+    if (!loading[LOAD_CLOCKS-1]) assert (word_fraction == has_fraction);
+    if (loading[LOAD_CLOCKS-1]) assert (word_fraction == !fraction_off);
 `ifdef FORMAL_CONTRACT
-    assert ({carry, due} == ref_3);
+    assert ({carry, due} == ref_word[DUE_LATENCY]);
 `endif
   end
 `endif

@@ -1,7 +1,7 @@
 // CRC-32C (Castagnoli, reflected polynomial 0x82F63B78), one byte a clock.
 //
 // start begins a new message (a byte on the same clock is its first); crc is the checksum of the bytes so far.
-// Latency: one clock. Reset: as after start.
+// Latency: CRC_LATENCY. Reset: as after start.
 `default_nettype none
 module crc32c (
     input wire clk,

@@ -1,6 +1,6 @@
 // Descriptor ROM: what the board is made of, one word a block (descriptors.vh, made from fpga/regs/blocks.txt), 0 elsewhere.
 //
-// Latency: one clock. Reset: none needed.
+// Latency: ROM_LATENCY. Reset: none needed.
 `default_nettype none
 module descriptor_rom (
     input wire clk,

@@ -3,7 +3,7 @@
 // Sits between line sequencer and gate; the scanner clock is not delayed. `reverse` is looked at with a line's first
 // slot. Whole slots of delay are in the line's first slot already, so delay is less than a slot lasts: never more than
 // one slot waits here. Slots outside lines are not delayed.
-// Latency: one clock (DELAY_LATENCY), for backward lines 1 + delay. Reset: nothing waits.
+// Latency: DELAY_LATENCY, for backward lines 1 + delay. Reset: nothing waits.
 `default_nettype none
 module direction_delay #(
     parameter W = 16

@@ -2,7 +2,7 @@
 // DeviceFault on the host, bit n - 1 of `seen` is fault n.
 //
 // Causes on the same clock: the lowest number is kept. An acknowledge clears the fault, unless a cause is present on the
-// same clock. Latency: one clock. Reset: none.
+// same clock. Latency: FAULT_LATENCY. Reset: none.
 `default_nettype none
 module fault_latch (
     input wire clk,

@@ -6,7 +6,7 @@
 // until clear; of several in one frame the first of sequence, shape, checksum is reported.
 // `odd` belongs to the line committed last: its number, counted from the job's first line, is odd.
 // position_load sets the line that must come next (after clear, before a job).
-// Latency: commit or fault three clocks after the frame's last byte (VERDICT_LATENCY); line_valid on the same clock as
+// Latency: commit or fault VERDICT_LATENCY after the frame's last byte; line_valid on the same clock as
 // commit. window_slots is to stand for two clocks before a frame and to its end, the other settings and the position for
 // two clocks before its last byte.
 // Reset: waiting for revolution 0, line 0.

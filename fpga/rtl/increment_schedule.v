@@ -3,7 +3,7 @@
 // While `run` is high, segments are taken in order: load_increment and increment for one clock, then the next segment's
 // exactly `clocks` clocks later (0 acts as 1). The last increment stays in force. A push into a full list is dropped and
 // sets `overflow`, sticky until flush. The list is a line_fifo, so it maps to block RAM.
-// Latency: load_increment is a flip-flop, one clock after the segment is due (SCHEDULE_LATENCY); a segment can be due
+// Latency: load_increment is a flip-flop, SCHEDULE_LATENCY after the segment is due; a segment can be due
 // three clocks after its push at the earliest. Reset and flush: empty, increment 0.
 `default_nettype none
 module increment_schedule #(

@@ -9,7 +9,7 @@
 //
 // limit is to stand while enable is high: on a change `ahead` would go another way than `pending` for a clock.
 // index is a pin, two flip-flops bring it into this clock; its rising edge counts.
-// Latency: error four clocks after the pin's edge; adjust two clocks after line_end at the earliest, later where an
+// Latency: error INDEX_LATENCY after the pin's edge; adjust ADJUST_LATENCY after line_end at the earliest, later where an
 // index comes at that time. Reset and enable low: no reference, nothing pending.
 `default_nettype none
 module index_reference #(

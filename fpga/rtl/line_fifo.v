@@ -3,8 +3,8 @@
 // push writes on trial; commit makes all that was pushed before this clock readable; rollback forgets what is not
 // committed (and a push on the same clock). `data` is shown while `valid`; pop takes it. level counts committed bytes
 // that were not yet popped, almost_empty says that they are `low_level` or fewer. A push without room is dropped and sets `overflow`, sticky until flush or reset.
-// Latency: a committed byte is valid two clocks after the commit at the earliest; level shows one clock after what it
-// counts, almost_empty two (LEVEL_LATENCY). Memory: one write and one registered
+// Latency: a committed byte is valid two clocks after the commit at the earliest; level shows LEVEL_LATENCY after what
+// it counts, almost_empty ALMOST_EMPTY_LATENCY. Memory: one write and one registered
 // read port, so it maps to block RAM. Reset and flush: empty.
 `default_nettype none
 module line_fifo #(

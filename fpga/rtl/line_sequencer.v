@@ -2,7 +2,7 @@
 //
 // A line begins on a slot that finds no line running and `start` high; the settings are taken there and kept to its end.
 // The slot after the last may begin the next line: lines follow without a gap. A slots_per_line of 0 starts nothing.
-// Latency: all outputs are flip-flops, one clock after `slot` (SEQUENCER_LATENCY); apart from `running` they are high
+// Latency: all outputs are flip-flops, SEQUENCER_LATENCY after `slot`; apart from `running` they are high
 // for that clock only. Reset: idle.
 `default_nettype none
 module line_sequencer #(

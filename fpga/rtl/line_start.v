@@ -3,8 +3,7 @@
 // timed low: slots run with `run`; lines begin at the first slot after `strobe` was seen while they do. timed high: tick 0
 // is the clock after `go`; slots and lines begin together, first_tick clocks later, and `strobe` means nothing.
 // A tick that was over before run rose starts nothing; go sets a new tick 0. run low stops all.
-// Latency: `started` one clock after the strobe; slots_run is high first_tick + 3 clocks after the clock that takes go
-// (START_LATENCY). Reset: standing.
+// Latency: `started` one clock after the strobe; slots_run is high first_tick + START_LATENCY clocks after the clock that takes go. Reset: standing.
 `default_nettype none
 module line_start #(
     parameter W = 32
@@ -45,6 +44,9 @@ module line_start #(
   end
 
 `ifdef FORMAL
+  /* verilator lint_off UNUSEDPARAM */
+  `include "latencies.vh"
+  /* verilator lint_on UNUSEDPARAM */
   // In timed mode nothing runs before its tick, and the tick starts it.
   reg valid = 1'b0;
   reg [W+1:0] since;
@@ -65,8 +67,8 @@ module line_start #(
   always @(*) if (valid) begin
     if (counting) assert (gone && since == {2'b00, tick} + 1'b1);
     if (!gone) assert (!counting && !arrives && !arrived);
-    if (arrived) assert (gone && since >= {2'b00, fixed} + 2'd3);
-    if (arrives) assert (gone && since == {2'b00, fixed} + 2'd2);
+    if (arrived) assert (gone && since >= {2'b00, fixed} + START_LATENCY);
+    if (arrives) assert (gone && since == {2'b00, fixed} + START_LATENCY - 1);
     if (started && was_timed) assert (arrived);
     if (arrived) assert (was_run);
   end

@@ -5,7 +5,7 @@
 // `run` is low the gate is closed.
 // Fails dark: `fault`, or a bit that is missing when its slot begins (`underrun`, sticky), closes the gate on that clock
 // and keeps it closed until `clear`, which drops the prefetched byte too, and then until a line begins.
-// Latency: `gate` is a flip-flop, one clock after the sequencer's outputs (GATE_LATENCY). Reset: dark until clear.
+// Latency: `gate` is a flip-flop, GATE_LATENCY after the sequencer's outputs. Reset: dark until clear.
 `default_nettype none
 module pulse_gate (
     input wire clk,

@@ -1,7 +1,7 @@
 // Register read: what the host finds at an address. Registers that it writes are kept here once more, in a block RAM, as
 // they were accepted (a low word as soon as it was written); until their first write they read as after reset.
 //
-// Latency: two clocks from address to read_data (READ_LATENCY); the value is that of the clock after the address.
+// Latency: READ_LATENCY from address to read_data; the value is that of the clock after the address.
 // Reset: 0, nothing written.
 `default_nettype none
 module register_read #(

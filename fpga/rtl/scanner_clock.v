@@ -1,6 +1,6 @@
 // Scanner clock: a strobe every slots_per_microvector-th slot of a line, in phase with the line's first slot.
 //
-// A setting of 0 acts as 1; it is to stand for a clock before a line. Latency: one clock after the sequencer's outputs. Reset: idle.
+// A setting of 0 acts as 1; it is to stand for a clock before a line. Latency: SCAN_LATENCY after the sequencer's outputs. Reset: idle.
 `default_nettype none
 module scanner_clock #(
     parameter W = 16

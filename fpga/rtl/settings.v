@@ -8,7 +8,7 @@
 //     after one of these was written.
 // `command` is high for one clock. Values of two words are taken with their high word. `store` goes with every accepted
 // write of a register that can be read back: what was written where.
-// Latency: two clocks (SETTINGS_LATENCY): the word is taken aside and looked at, then accepted. Reset: as the map says.
+// Latency: SETTINGS_LATENCY: the word is taken aside and looked at, then accepted. Reset: as the map says.
 `default_nettype none
 module settings (
     input wire clk,

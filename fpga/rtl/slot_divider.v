@@ -2,7 +2,7 @@
 //
 // run low stops it; the first slot begins on the clock that finds run high. A seeds_per_slot of 0 acts as 1. adjust makes
 // the slot that runs longer by `amount` (two's complement: or shorter; a slot that is over by then ends at once).
-// Latency: `slot` is a flip-flop, high in the clock after the one it marks. Reset: idle.
+// Latency: SLOT_LATENCY; `slot` is a flip-flop, high in the clock after the one it marks. Reset: idle.
 `default_nettype none
 module slot_divider #(
     parameter W = 16

@@ -4,13 +4,13 @@
 // host bytes -> frame_parser -> line_fifo (bits) and line queue (first slot, direction) -> pulse_gate, paced by line_start,
 // slot_divider, line_sequencer and direction_delay; two axes by ab_generator, each with its increment_schedule;
 // scanner_clock; index_reference lets the lines follow the axis; watchdog and fault_latch close the gate.
-// Axis 1 has a fraction where FRACTION_1 is 1; with two the logic does not fit an HX8K.
+// Axis 1 has a fraction where FRACTION_1 is 1; with two the logic does not close on an HX8K.
 // Once lines have begun they follow without a gap for as long as slots run: the machine never waits, a line that is not
 // there in time is an underrun.
 // Fails dark: any fault, the interlock or a stop closes the gate; command bit 0 acknowledges, and drops all that was queued.
 // To go on after a fault: stop the slots, acknowledge, load the position, send lines, run, start.
-// Latency: a slot's first clock to `gate` is four seed clocks (SLOT_TO_GATE: divider, sequencer, delay, gate), to `scan`
-// three; an address to read_data two (READ_LATENCY). Reset: as the map says, dark, everything standing.
+// Latency: a slot's first clock to `gate` is SLOT_TO_GATE seed clocks (divider, sequencer, delay, gate), to `scan`
+// SLOT_TO_SCAN; an address to read_data READ_LATENCY (latencies.vh has all of these names). Reset: as the map says, dark, everything standing.
 `default_nettype none
 module synchro #(
     parameter FIFO_BITS = 12,

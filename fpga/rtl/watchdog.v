@@ -1,7 +1,7 @@
 // Watchdog: expires when the host is silent for `limit` clocks; sticky until clear.
 //
 // kick is any sign of life. enable low holds it at rest; expired then stays as it is. A limit of 0 expires at once.
-// Latency: one clock. Reset: not expired.
+// Latency: WATCHDOG_LATENCY. Reset: not expired.
 `default_nettype none
 module watchdog #(
     parameter W = 32

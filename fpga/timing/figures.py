@@ -2,14 +2,33 @@
 """Draws docs/timing.md, one figure in text a timing table.
 
 usage: figures.py            writes the page
-       figures.py --check    writes nothing; exit status 1 where the page is stale"""
+       figures.py --check    writes nothing; exit status 1 where the page is stale
+
+Exit status 1, too, where a latency of fpga/regs/latencies.txt is in no table: nothing would measure it."""
 
 import pathlib
+import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(HERE.parent / "regs"))
+import generate
+
+LATENCIES = generate.clocks_of(generate.read_latencies())
 PAGE = HERE.parent.parent / "docs/timing.md"
 WIDTH = 96  # clocks of a figure
+
+
+def clock_of(text):
+    """"88+2*SLOT_TO_GATE": a sum of products."""
+    total = 0
+    for term in text.split("+"):
+        product = 1
+        for factor in term.split("*"):
+            product *= LATENCIES[factor] if factor in LATENCIES else int(factor)
+        total += product
+    return total
 
 
 def read_table(path):
@@ -24,7 +43,7 @@ def read_table(path):
         elif line:
             clock, rest = line.split(":", 1)
             cells = [dict(word.split("=") for word in half.split()) for half in rest.split("->")]
-            rows.append((int(clock), *cells))
+            rows.append((clock_of(clock), *cells))
     return about, block, rows
 
 
@@ -64,9 +83,14 @@ def main():
             "Drawn by `fpga/timing/figures.py` from `fpga/timing/*.txt`, the tables that model and Verilog are tested with. `>` is an",
             "input, `<` an output; `_` 0, `#` 1, `|` and `=` another value (listed at the end of the line), `.` not looked at. An input",
             "stands before the clock of its column, an output just after it; the scale shows the tens.", ""]
+    unmeasured = set(LATENCIES)
     for path in sorted(HERE.glob("*.txt")):
+        unmeasured -= set(re.findall(r"[A-Z_]{3,}", re.sub("#.*", "", path.read_text())))
         about, block, rows = read_table(path)
         text += [f"## {path.stem}: {block}", "", *about, "", "```", *figure(rows), "```", ""]
+    if unmeasured:
+        print("in no timing table: " + ", ".join(sorted(unmeasured)))
+        return 1
     page = "\n".join(text)
     stale = not PAGE.exists() or PAGE.read_text() != page
     if stale and "--check" in sys.argv:

@@ -37,7 +37,7 @@ def read_table(path):
         elif line:
             clock, rest = line.split(":", 1)
             inputs, outputs = rest.split("->")
-            rows.append((int(clock), [w.split("=") for w in inputs.split()], [w.split("=") for w in outputs.split()]))
+            rows.append((clock, [w.split("=") for w in inputs.split()], [w.split("=") for w in outputs.split()]))
     return block, rows
 
 
@@ -45,6 +45,7 @@ def bench(source, module, overrides, rows):
     parameters = {name: overrides.get(name, value.strip()) for name, value in PARAMETER.findall(source)}
     ports = PORT.findall(source)
     text = ["`timescale 1ns/1ns", "module bench;"]
+    text += ['  `include "latencies.vh"']  # the clocks of rows may be sums of these
     text += [f"  localparam {name} = {value};" for name, value in parameters.items()]
     for direction, width, name in ports:
         kind = "reg" if direction == "input" else "wire"
@@ -60,11 +61,11 @@ def bench(source, module, overrides, rows):
     text += ["  initial begin"]
     clock = rows[0][0]
     for row, inputs, outputs in rows:
-        if row > clock:
-            text.append(f"    repeat ({row - clock}) begin {tick} end")
+        text.append(f"    if (({row}) < ({clock})) $display(\"WRONG clock {row}: clocks must rise\");")
+        text.append(f"    repeat (({row}) - ({clock})) begin {tick} end")
         text += [f"    {name} = 64'd{int(value, 0)};" for name, value in inputs]
         text.append(f"    {tick}")
-        clock = row + 1
+        clock = row + "+1"
         for name, value in outputs:
             text.append(f"    if ({name} !== {int(value, 0)}) $display(\"WRONG clock {row}: {name} = %0d, "
                         f"the table says {int(value, 0)}\", {name});")

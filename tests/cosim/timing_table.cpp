@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "gravure/fpga/latencies.hpp"
+
 namespace gravure::cosim {
 namespace {
 
@@ -20,6 +22,33 @@ std::map<std::string, std::uint64_t> read_settings(std::istream& words, const st
     settings[word.substr(0, equal)] = std::stoull(word.substr(equal + 1), nullptr, 0);
   }
   return settings;
+}
+
+std::uint64_t number_or_latency(const std::string& word, const std::string& where) {
+  if (word.find_first_not_of("0123456789") == std::string::npos && !word.empty()) {
+    return std::stoull(word);
+  }
+  const auto* const found = std::find_if(fpga::kLatencies.begin(), fpga::kLatencies.end(),
+                                         [&word](const fpga::Latency& latency) { return latency.name == word; });
+  if (found == fpga::kLatencies.end()) {
+    throw std::runtime_error(std::string(where).append(": \"").append(word).append("\" is no latency"));
+  }
+  return static_cast<std::uint64_t>(found->clocks);
+}
+
+/// "88+2*SLOT_TO_GATE": a sum of products.
+std::uint64_t read_clock(const std::string& text, const std::string& where) {
+  std::uint64_t sum = 0;
+  std::istringstream terms(text);
+  for (std::string term; std::getline(terms, term, '+');) {
+    std::uint64_t product = 1;
+    std::istringstream factors(term);
+    for (std::string factor; std::getline(factors, factor, '*');) {
+      product *= number_or_latency(factor, where);
+    }
+    sum += product;
+  }
+  return sum;
 }
 
 std::size_t index_of(const std::vector<Port>& ports, const std::string& name) {
@@ -52,7 +81,7 @@ TimingTable read_timing_table(const std::string& path) {
       throw std::runtime_error(where + ": a row starts with \"clock:\"");
     }
     TimingTable::Row row;
-    row.clock = std::stoull(first);
+    row.clock = read_clock(first.substr(0, first.size() - 1), where);
     row.inputs = read_settings(words, "->", where);
     row.outputs = read_settings(words, "", where);
     if (!table.rows.empty() && row.clock <= table.rows.back().clock) {

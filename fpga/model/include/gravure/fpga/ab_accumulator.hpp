@@ -22,7 +22,7 @@ class AbAccumulator {
 
   /// FPGA clocks from the seed clock that shows a word to the pins, for its first bit.
   static constexpr int word_latency(const AbPacer::Widths& widths) noexcept {
-    return 3 + widths.bits / widths.segment_bits;
+    return kWordStages + widths.bits / widths.segment_bits;
   }
 
   explicit AbAccumulator(const AbPacer::Widths& widths) noexcept

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "gravure/fpga/latencies.hpp"
+
 namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/ab_pacer.v: on which of the next two FPGA clocks a counter steps, and by how much. One
@@ -10,9 +12,9 @@ class AbPacer {
  public:
   /// Seed clocks from the one that takes a load to the one after which its first word shows; one of less than that many
   /// later is refused.
-  static constexpr int kLoadClocks = 8;
-  static constexpr int kDueLatency = 3;   ///< the same, from `enable`
-  static constexpr int kStepLatency = 1;  ///< the same, from `load_increment`
+  static constexpr int kLoadClocks = fpga::kLoadClocks;
+  static constexpr int kDueLatency = fpga::kDueLatency;    ///< the same, from `enable`
+  static constexpr int kStepLatency = fpga::kStepLatency;  ///< the same, from `load_increment`
 
   struct Widths {
     int bits = 32;

@@ -5,10 +5,9 @@
 namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/direction_delay.v (W = 16): the slots of backward lines come `delay` clocks later.
+/// Latency (latencies.hpp): kDelayLatency, for backward lines `delay` more.
 class DirectionDelay {
  public:
-  static constexpr int kLatency = 1;  ///< clocks, for backward lines 1 + delay
-
   struct Inputs {
     bool rst = false;
     std::uint16_t delay = 0;  ///< less than a slot lasts

@@ -9,10 +9,10 @@ namespace gravure::fpga {
 /// Bit-exact model of fpga/rtl/frame_parser.v: bytes from the host -> lines that are in sequence, in shape and whole.
 /// A frame is kFrameKind, revolution, line, first slot (64 bits each, little endian), the window's packed bits, and the
 /// CRC-32C of all that but the kind (little endian). Any other frame is rolled back and stops the parser until clear.
+/// Latency (latencies.hpp): kVerdictLatency.
 class FrameParser {
  public:
   static constexpr std::uint8_t kFrameKind = 0xA5;
-  static constexpr int kVerdictLatency = 3;  ///< clocks from a frame's last byte to commit or fault
 
   struct Inputs {
     bool rst = false;

@@ -8,10 +8,9 @@ namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/increment_schedule.v (32 bits, 2^address_bits segments): loads the next increment
 /// exactly `clocks` clocks after the last, for spin-up and spin-down without a gap. The last increment stays in force.
+/// Latency (latencies.hpp): kScheduleLatency.
 class IncrementSchedule {
  public:
-  static constexpr int kLatency = 1;  ///< clocks from a segment's due to load_increment
-
   explicit IncrementSchedule(int address_bits = 8) : segments_(address_bits) {}
 
   struct Inputs {

@@ -8,11 +8,10 @@ namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/line_fifo.v (W bits of Word): words on trial until commit, forgotten by rollback; only
 /// committed ones are read. `data` means nothing while `valid` is low.
+/// Latency (latencies.hpp): kLevelLatency, kAlmostEmptyLatency.
 template <class Word>
 class TrialFifo {
  public:
-  static constexpr int kLevelLatency = 1;
-
   struct Inputs {
     bool rst = false;
     bool flush = false;
@@ -26,7 +25,7 @@ class TrialFifo {
   struct Outputs {
     bool valid = false;
     Word data = 0;
-    std::uint32_t level = 0;   ///< committed and not yet popped, kLevelLatency clocks ago
+    std::uint32_t level = 0;   ///< committed and not yet popped, LEVEL_LATENCY clocks ago
     bool almost_empty = true;  ///< level was low_level or less, one clock later
     bool full = false;
     bool overflow = false;  ///< sticky until flush

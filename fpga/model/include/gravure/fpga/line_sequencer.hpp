@@ -6,10 +6,9 @@ namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/line_sequencer.v (W = 24): exactly slots_per_line decisions a line. A line begins on a
 /// slot that finds none running and `start` high, and takes its settings there.
+/// Latency (latencies.hpp): kSequencerLatency.
 class LineSequencer {
  public:
-  static constexpr int kLatency = 1;  ///< clocks from `slot` to the outputs
-
   struct Inputs {
     bool rst = false;
     bool slot = false;

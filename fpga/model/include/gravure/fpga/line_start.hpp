@@ -6,10 +6,9 @@ namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/line_start.v (W = 32): when slots run and when the first line may begin, by the start
 /// strobe or at a programmed tick after go.
+/// Latency (latencies.hpp): kStartLatency.
 class LineStart {
  public:
-  static constexpr int kStartLatency = 3;  ///< clocks from go to slots_run, first_tick apart
-
   struct Inputs {
     bool rst = false;
     bool run = false;

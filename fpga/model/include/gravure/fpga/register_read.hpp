@@ -9,10 +9,9 @@ namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/register_read.v: what the host finds at an address. Registers that it writes are kept
 /// here once more, as they were accepted.
+/// Latency (latencies.hpp): kReadLatency.
 class RegisterRead {
  public:
-  static constexpr int kLatency = 2;  ///< clocks from address to read_data
-
   struct Inputs {
     bool rst = false;
     std::uint8_t address = 0;

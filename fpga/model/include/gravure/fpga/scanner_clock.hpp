@@ -6,10 +6,9 @@ namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/scanner_clock.v (W = 24): a strobe every slots_per_microvector-th slot of a line, in
 /// phase with its first slot.
+/// Latency (latencies.hpp): kScanLatency.
 class ScannerClock {
  public:
-  static constexpr int kLatency = 1;  ///< clocks from the sequencer's outputs to `scan`
-
   struct Inputs {
     bool rst = false;
     bool decision = false;

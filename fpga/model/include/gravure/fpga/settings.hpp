@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "gravure/fpga/latencies.hpp"
 #include "gravure/fpga/register_map.hpp"
 
 namespace gravure::fpga {
@@ -51,7 +52,7 @@ class Settings {
     friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
-  static constexpr int kLatency = 2;  ///< clocks from a write to the register
+  static constexpr int kLatency = kSettingsLatency;  ///< clocks from a write to the register
   /// Clocks that the settings of lines must stand before slots may run.
   static constexpr int kCheckClocks = 4;
 

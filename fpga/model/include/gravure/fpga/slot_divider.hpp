@@ -5,10 +5,9 @@
 namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/slot_divider.v (W = 16): a strobe at the first seed clock of every slot.
+/// Latency (latencies.hpp): kSlotLatency.
 class SlotDivider {
  public:
-  static constexpr int kLatency = 1;  ///< clocks from a slot's first one to `slot`, itself included
-
   struct Inputs {
     bool rst = false;
     bool run = false;

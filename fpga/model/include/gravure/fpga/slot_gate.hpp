@@ -7,10 +7,9 @@ namespace gravure::fpga {
 /// Bit-exact model of fpga/rtl/pulse_gate.v: the gate for one slot at a time, from bytes of a show-ahead FIFO, most
 /// significant bit first. Fails dark on a fault or a missing bit until clear, and then until a line begins.
 /// (PulseGate is the gate as a whole line sees it, without the FIFO.)
+/// Latency (latencies.hpp): kGateLatency.
 class SlotGate {
  public:
-  static constexpr int kLatency = 1;  ///< clocks from the sequencer's outputs to `gate`
-
   struct Inputs {
     bool rst = false;
     bool run = false;

@@ -29,14 +29,9 @@ class Synchro {
  public:
   static constexpr std::size_t kAxes = 2;
   static constexpr AbGenerator::Widths kAxisWidths{.bits = 32, .prescaler_bits = 32, .fraction_bits = 34};
-  /// Axis 1 has no fraction (FRACTION_1 = 0): with two of them the logic does not fit an HX8K.
+  /// Axis 1 has no fraction (FRACTION_1 = 0): with two of them the logic does not close 82 MHz on an HX8K.
   static constexpr AbGenerator::Widths kAxis1Widths{
       .bits = 32, .prescaler_bits = 32, .fraction_bits = 34, .fraction = false};
-  /// Seed clocks from the first one of a slot to `gate`: divider, sequencer, delay, gate.
-  static constexpr int kSlotToGate =
-      SlotDivider::kLatency + LineSequencer::kLatency + DirectionDelay::kLatency + SlotGate::kLatency;
-  /// Seed clocks from the first one of a slot to `scan`.
-  static constexpr int kSlotToScan = SlotDivider::kLatency + LineSequencer::kLatency + ScannerClock::kLatency;
 
   struct Inputs {
     bool rst = false;

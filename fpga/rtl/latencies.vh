@@ -1,0 +1,25 @@
+// Made by fpga/regs/generate.py from latencies.txt; change that file.
+localparam SETTINGS_LATENCY = 2;  // seed clocks: a write to the register or command
+localparam READ_LATENCY = 2;  // seed clocks: an address to read_data
+localparam VERDICT_LATENCY = 3;  // seed clocks: a frame's last byte to commit or fault
+localparam LEVEL_LATENCY = 1;  // seed clocks: what the FIFO holds to its level
+localparam ALMOST_EMPTY_LATENCY = 2;  // seed clocks: what the FIFO holds to almost_empty
+localparam START_LATENCY = 3;  // seed clocks: go to slots_run, first_tick apart
+localparam SLOT_LATENCY = 1;  // seed clocks: a slot's first clock to `slot`
+localparam SEQUENCER_LATENCY = 1;  // seed clocks: `slot` to the decision
+localparam DELAY_LATENCY = 1;  // seed clocks: the decision through direction_delay; for backward lines reverse_delay more
+localparam GATE_LATENCY = 1;  // seed clocks: the delayed decision to `gate`
+localparam SCAN_LATENCY = 1;  // seed clocks: the decision to `scan`
+localparam SLOT_TO_GATE = SLOT_LATENCY + SEQUENCER_LATENCY + DELAY_LATENCY + GATE_LATENCY;  // seed clocks: a slot's first clock to `gate`
+localparam SLOT_TO_SCAN = SLOT_LATENCY + SEQUENCER_LATENCY + SCAN_LATENCY;  // seed clocks: a slot's first clock to `scan`
+localparam SCHEDULE_LATENCY = 1;  // seed clocks: a segment that is due to its load_increment
+localparam INDEX_LATENCY = 4;  // seed clocks: an edge of the index pin to index_error
+localparam ADJUST_LATENCY = 2;  // seed clocks: the end of a line to its correction
+localparam WATCHDOG_LATENCY = 1;  // seed clocks: the clock that is one too many to `expired`
+localparam FAULT_LATENCY = 1;  // seed clocks: an error to `fault`
+localparam CRC_LATENCY = 1;  // seed clocks: a byte to the checksum
+localparam ROM_LATENCY = 1;  // seed clocks: a number to its descriptor
+localparam LOAD_CLOCKS = 8;  // seed clocks: A-B load to the word of its clock 1
+localparam DUE_LATENCY = 3;  // seed clocks: A-B enable to the word
+localparam STEP_LATENCY = 1;  // seed clocks: A-B load_increment to the word
+localparam WORD_STAGES = 3;  // FPGA clocks: the word to the pins, and one more for each segment of the counter
