@@ -9,6 +9,7 @@
 #include <set>
 #include <string_view>
 
+#include "error_budget_text.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/job_file.hpp"
@@ -44,8 +45,7 @@ std::optional<std::int64_t> wrong_layer(const ProgramHeader& header, LayerOrder 
 }
 
 /// The job text in a program must lead to the very plan, and the order of layers, that stand in it.
-Result<std::optional<std::string>> plan_contradiction(const ProgramHeader& header) {
-  GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));
+Result<std::optional<std::string>> plan_contradiction(const ProgramHeader& header, const Job& job) {
   const std::int64_t exposures =
       header.plan.carriage ? header.plan.carriage->layers : revolutions_per_band(header.plan);
   GRAVURE_TRY(Plan again, make_plan(job, image_columns(header.plan), exposures));
@@ -128,6 +128,9 @@ Json json_of(const VerifyReport& report, const ProgramHeader& header, bool every
   if (report.carriage) {
     json["carriage"] = json_of(*report.carriage);
   }
+  if (report.error) {
+    json["error_um"] = error_budget_json(*report.error);
+  }
   return json;
 }
 
@@ -159,6 +162,9 @@ std::string text_of(const VerifyReport& report, const ProgramHeader& header, boo
         report.carriage->ab_step_um, report.carriage->error_max_um, report.carriage->worst_revolution,
         report.carriage->worst_line, report.carriage->seam_end_um);
   }
+  if (report.error) {
+    text += error_budget_text(*report.error);
+  }
   for (const std::string& note : report.notes) {
     text += "note: " + note + "\n";
   }
@@ -188,7 +194,8 @@ Result<int> verify_program(const std::string& path, const Options& options, cons
   const ProgramHeader& header = program->header();
   const ImageFiles files;
   GRAVURE_TRY(const FoundImages found, find_images(header, path, options.images, files));
-  GRAVURE_TRY(const std::optional<std::string> contradiction, plan_contradiction(header));
+  GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));
+  GRAVURE_TRY(const std::optional<std::string> contradiction, plan_contradiction(header, job));
   LayerLinesFactory readers;
   const std::int64_t panel = command.memory_bytes() / 4;
   if (found.stack) {
@@ -203,6 +210,7 @@ Result<int> verify_program(const std::string& path, const Options& options, cons
     verify_options.threads = command.threads;
     verify_options.cancel = &cancel_token();
     verify_options.progress = &bar;
+    verify_options.budget = BudgetOptions{job.twin, job.limits.landing_um, job.limits.defocus_um};
     return verify([&path] { return open_grv(path); }, emulated_devices(), readers, verify_options);
   }();
   GRAVURE_TRY(VerifyReport report, std::move(verified));
@@ -284,7 +292,7 @@ Result<int> verify_job(const Options& options, const Command& command) {
 
 void add_verify(CLI::App& app, Command& command) {
   CLI::App* verb =
-      add_verb(app, command, "verify", "Emulate a job or program, compare with its images, and judge the seam");
+      add_verb(app, command, "verify", "Emulate a job or program, compare with its images, judge seam and landing");
   const auto options = std::make_shared<Options>();
   verb->add_option("JOB|PROGRAM", options->input, "Job file (TOML) or program file (.grv)")->required();
   verb->add_option("--images", options->images, "Folder with the images, where they are not at the job's paths");

@@ -16,6 +16,8 @@ namespace gravure {
 namespace {
 
 constexpr std::int64_t kMostRevolutions = 12;
+/// Positions in the field are doubles of mm: what the geometry leaves below this is their arithmetic.
+constexpr double kResidueUm = 1e-9;
 
 bool is_of_scanner(ErrorTerm term) noexcept {
   return term == ErrorTerm::galvo_resolution || term == ErrorTerm::microvectors || term == ErrorTerm::cross_scan ||
@@ -70,6 +72,9 @@ Result<void> fill_budget(const Plan& plan, const ErrorBudgetRequest& request, Er
     GRAVURE_TRY(const ErrorModel model, ErrorModel::make(plan, request.trajectory, alone(twin, term)));
     const ErrorModel::Bound bound = model.job_bound().bound;
     value = term == ErrorTerm::defocus ? bound.defocus_um : bound.landing_um;
+    if (is_of_scanner(term) && *value < kResidueUm) {
+      value = 0;
+    }
   }
   return {};
 }

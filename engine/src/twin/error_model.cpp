@@ -54,8 +54,8 @@ struct ErrorModel::Line {
   std::int64_t first_slot = 0;
   std::int64_t first_tick = 0;  ///< of the first pulse
   Shift shift;
-  double first_column_um = 0;  ///< of pixel 0
-  double offset_um = 0;        ///< helical: what rounding does to the share of a column that U takes up
+  double first_column_um = 0;          ///< of pixel 0
+  std::vector<double> rounded_off_um;  ///< helical: what rounding does to each order to U
   AxisMotion::Start axis_start;
   double axis_drift_um = 0;  ///< at the first pulse
   AxisMotion::Start carriage_start;
@@ -74,9 +74,10 @@ Result<ErrorModel> ErrorModel::make(const Plan& plan, const scan::LineTrajectory
   model.column_um_ = to_double(plan.line.pixel_pitch_um);
   model.scanner_ = {LineErrors::none(plan.line.pixels), LineErrors::none(plan.line.pixels)};
   if (trajectory != nullptr) {
-    model.scanner_ = scanner_errors(*trajectory, {twin.galvo_resolution, twin.microvectors, twin.cross_scan, twin.lag});
-    model.rounded_offset_um_ = plan.carriage && twin.galvo_resolution ? trajectory->resolution_mm * 1000 : 0;
-    model.set_offset_range();
+    model.scanner_ = scanner_errors(
+        *trajectory, {twin.galvo_resolution, twin.microvectors, twin.cross_scan, twin.lag, plan.carriage.has_value()});
+    model.count_um_ = trajectory->resolution_mm * 1000;
+    model.set_rounding_range();
   }
   model.radius_um_ = to_double(plan.rotary.circumference_um) / (2 * kPi);
   if (twin.run_out.enabled && plan.mode != Mode::flat) {
@@ -107,38 +108,37 @@ ErrorModel::Shift ErrorModel::shift_at(std::int64_t revolution, std::int64_t lin
   return shift;
 }
 
-/// A helical line that starts on a fraction of a column has its set-points moved by that, in whole counts.
-double ErrorModel::rounded_off_um(double share) const {
-  const double counts = share * column_um_ / rounded_offset_um_;
-  return (counts - std::round(counts)) * rounded_offset_um_;
-}
-
-double ErrorModel::column_offset_um(std::int64_t revolution, std::int64_t line) const {
-  if (rounded_offset_um_ == 0) {
-    return 0;
-  }
+/// How far U stands back for a helical line that starts on a fraction of a column.
+double ErrorModel::column_shift_um(std::int64_t revolution, std::int64_t line) const {
   const std::int64_t steps = (revolution - plan_.carriage->layers) * plan_.rotary.lines_per_revolution + line;
-  return rounded_off_um(columns_per_line_ * static_cast<double>(steps) - static_cast<double>(map_.column_after(steps)));
+  return (static_cast<double>(map_.column_after(steps)) - columns_per_line_ * static_cast<double>(steps)) * column_um_;
 }
 
 /// The fractions are all multiples of one over the denominator of the columns a line.
-void ErrorModel::set_offset_range() {
-  constexpr std::int64_t kMostFractions = 100'000;
-  if (rounded_offset_um_ == 0) {
+void ErrorModel::set_rounding_range() {
+  constexpr std::int64_t kMostOrders = 10'000'000;
+  if (scanner_[0].rounded.order_um.empty()) {
     return;
   }
   const Integer fractions =
       denominator_of(Rational(plan_.carriage->feed_pixels / Rational(plan_.rotary.lines_per_revolution)));
-  if (fractions > kMostFractions) {
-    offset_range_ = {-rounded_offset_um_ / 2, rounded_offset_um_ / 2};
+  if (fractions * Integer(scanner_[0].rounded.order_um.size()) > kMostOrders) {
+    rounding_range_ = {-count_um_ / 2, count_um_ / 2};
     return;
   }
   const auto count = static_cast<std::int64_t>(fractions);
-  for (std::int64_t i = 0; i < count; ++i) {
-    const double off = rounded_off_um(static_cast<double>(i) / static_cast<double>(count));
-    offset_range_.see(off);
-    if (std::abs(off) > rounded_offset_um_ * 0.499999) {  // half way: it may go to either side
-      offset_range_.see(-off);
+  for (const LineErrors& errors : scanner_) {
+    const auto [first, last] =
+        std::minmax_element(errors.rounded.order_before.begin(), errors.rounded.order_before.end());
+    for (std::int64_t i = 0; i < count; ++i) {
+      const double shift_um = -static_cast<double>(i) / static_cast<double>(count) * column_um_;
+      const std::vector<double> off = errors.rounded.rounded_off_um(shift_um, count_um_);
+      for (std::size_t order = *first; order <= *last + 1; ++order) {
+        rounding_range_.see(off[order]);
+        if (std::abs(off[order]) > count_um_ * 0.499999) {  // half way: it may go to either side
+          rounding_range_.see(-off[order]);
+        }
+      }
     }
   }
 }
@@ -150,14 +150,17 @@ ErrorModel::Line ErrorModel::line_at(std::int64_t revolution, std::int64_t line)
   result.reverse = reverse;
   result.first_slot = reverse ? plan_.line.reverse_first_slot : plan_.line.forward_first_slot;
   result.first_tick = (revolution * plan_.rotary.lines_per_revolution + line) * plan_.line.ticks +
-                      result.first_slot * plan_.clock.ticks_per_slot;
+                      result.first_slot * plan_.clock.ticks_per_slot +
+                      (reverse ? plan_.line.offset_remainder_ticks : 0);
   result.shift = shift_at(revolution, line);
   const std::int64_t column =
       plan_.carriage
           ? map_.column_after((revolution - plan_.carriage->layers) * plan_.rotary.lines_per_revolution + line)
           : revolution / revolutions_per_band(plan_) * plan_.line.pixels;
   result.first_column_um = static_cast<double>(column) * column_um_;
-  result.offset_um = column_offset_um(revolution, line);
+  if (!result.errors->rounded.order_um.empty()) {
+    result.rounded_off_um = result.errors->rounded.rounded_off_um(column_shift_um(revolution, line), count_um_);
+  }
   result.axis_start = axis_->start_of(revolution);
   result.axis_drift_um = axis_->drift_um(result.axis_start, result.first_tick);
   if (carriage_) {
@@ -179,8 +182,14 @@ inline PulseError ErrorModel::landed(const Line& line, std::int64_t index, const
   error.across_um = errors.across_um[i] + axis_->off_um(line.axis_start, axis) + line.axis_drift_um +
                     axis_->drift_um_per_slot() * slots - line.shift.onwards +
                     line.shift.outwards * errors.slope_across[i];
-  error.along_um = errors.along_um[i] + line.offset_um - growth_ * (line.first_column_um + pixel * column_um_) +
+  error.along_um = errors.along_um[i] - growth_ * (line.first_column_um + pixel * column_um_) +
                    line.shift.outwards * errors.slope_along[i];
+  if (!line.rounded_off_um.empty()) {
+    const RoundedOrders& orders = errors.rounded;
+    const std::size_t before = orders.order_before[i];
+    const double share = orders.share_of_next[i];
+    error.along_um += line.rounded_off_um[before] * (1 - share) + line.rounded_off_um[before + 1] * share;
+  }
   if (carriage_) {
     error.along_um += carriage_->off_um(line.carriage_start, carriage) + line.carriage_drift_um +
                       carriage_->drift_um_per_slot() * slots;
@@ -242,7 +251,7 @@ ErrorModel::Bound ErrorModel::line_bound(std::int64_t revolution, std::int64_t l
   // Columns grow apart from column 0, wherever in the image the line lies.
   const double farthest_um = static_cast<double>(image_columns(plan_) - 1) * column_um_;
   Interval along = errors.along + between(0, -growth_ * farthest_um) +
-                   times(errors.slope_along_range, here.shift.outwards) + offset_range_;
+                   times(errors.slope_along_range, here.shift.outwards) + rounding_range_;
   if (carriage_) {
     along = along + moving(*carriage_, here.carriage_drift_um);
   }

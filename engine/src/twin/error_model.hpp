@@ -70,9 +70,8 @@ class ErrorModel {
 
   explicit ErrorModel(const Plan& plan) : plan_(plan), map_(plan) {}
   Shift shift_at(std::int64_t revolution, std::int64_t line) const;
-  double rounded_off_um(double share) const;
-  double column_offset_um(std::int64_t revolution, std::int64_t line) const;
-  void set_offset_range();
+  double column_shift_um(std::int64_t revolution, std::int64_t line) const;
+  void set_rounding_range();
   Line line_at(std::int64_t revolution, std::int64_t line) const;
   PulseError landed(const Line& line, std::int64_t index, const AxisMotion::Phase& axis,
                     const AxisMotion::Phase& carriage) const;
@@ -82,8 +81,8 @@ class ErrorModel {
   std::optional<AxisMotion> axis_;
   std::optional<AxisMotion> carriage_;
   ScannerErrors scanner_;
-  double rounded_offset_um_ = 0;  ///< helical: one count of the scanner, where rounding counts
-  Interval offset_range_;
+  double count_um_ = 0;      ///< of the scanner
+  Interval rounding_range_;  ///< helical: of the orders to U, on all lines
   std::optional<RunOut> run_out_;
   double growth_ = 0;  ///< of every length, by temperature
   double radius_um_ = 0;

@@ -1,17 +1,11 @@
 #include "judge.hpp"
 
 #include <cmath>
-#include <cstdio>
+
+#include "figure.hpp"
 
 namespace gravure {
 namespace {
-
-/// Six significant digits, however small the value is.
-std::string figure(double value) {
-  char text[32];
-  static_cast<void>(std::snprintf(text, sizeof text, "%.6g", value));
-  return text;
-}
 
 /// Revolutions over which a drift adds up by the end of revolution `revolution`.
 std::int64_t drifting_revolutions(const AxisCheck& axis, std::int64_t revolution) {

@@ -14,6 +14,8 @@ struct ScannerTerms {
   bool microvectors = false;
   bool cross_scan = false;
   bool lag = false;
+  /// Lines start on different fractions of a column, which U takes up: rounding its orders is left to RoundedOrders.
+  bool shifted_lines = false;
 };
 
 struct Interval {
@@ -27,6 +29,16 @@ struct Interval {
   }
 };
 
+/// Orders to U that are rounded to whole counts when the fraction of a column has been added, so that lines differ.
+struct RoundedOrders {
+  std::vector<double> order_um;           ///< of the set-points; where microvectors do not count, of the pulses
+  std::vector<std::size_t> order_before;  ///< the last order before each pulse
+  std::vector<double> share_of_next;      ///< how far on the way to the next one
+
+  /// What rounding does to each order on a line that is moved by so much.
+  std::vector<double> rounded_off_um(double shift_um, double count_um) const;
+};
+
 /// What the scanner does to the pulses of a line, in the order of time: landing minus target on the surface, for they
 /// are alike for all lines of one direction; and how the beam stands, so that what lifts the surface moves the spot.
 struct LineErrors {
@@ -35,6 +47,7 @@ struct LineErrors {
   std::vector<double> defocus_um;    ///< of the surface, towards the head, where the job knows of it
   std::vector<double> slope_along;   ///< of the beam: how far it goes along the line for a um towards the head
   std::vector<double> slope_across;  ///< likewise across
+  RoundedOrders rounded;             ///< empty where lines are alike
   Interval along;                    ///< of the above
   Interval across;
   Interval defocus;

@@ -11,6 +11,7 @@
 #include "axis_check.hpp"
 #include "gravure/raster/count.hpp"
 #include "judge.hpp"
+#include "judge_budget.hpp"
 #include "tally.hpp"
 
 namespace gravure {
@@ -355,8 +356,11 @@ Result<VerifyReport> verify(const std::function<Result<std::unique_ptr<LineSourc
   GRAVURE_TRY(const AxisChecks axes, AxisChecks::make(plan));
   Verifier verifier(header, program->lines_per_chunk(), axes, devices, options);
   GRAVURE_TRY(const Tally tally, verifier.run(programs, images));
-
-  return judge(plan, axes, tally, static_cast<bool>(images));
+  VerifyReport report = judge(plan, axes, tally, static_cast<bool>(images));
+  if (options.budget) {
+    GRAVURE_CHECK(judge_budget(programs, plan, options, report));
+  }
+  return report;
 }
 
 }  // namespace gravure

@@ -96,11 +96,11 @@ TEST(ErrorModel, AxisIsWhereTheEdgesOfTheRegistersPutIt) {
       const std::int64_t revolution = dice.between(0, plan.job.revolutions - 1);
       const std::int64_t line = dice.between(0, plan.rotary.lines_per_revolution - 1);
       const std::int64_t pixel = dice.between(0, plan.line.pixels - 1);
-      const std::int64_t slot = line_is_reverse(plan, revolution, line)
-                                    ? plan.line.reverse_first_slot + plan.line.pixels - 1 - pixel
-                                    : plan.line.forward_first_slot + pixel;
-      const std::int64_t tick =
-          (revolution * plan.rotary.lines_per_revolution + line) * plan.line.ticks + slot * plan.clock.ticks_per_slot;
+      const bool reverse = line_is_reverse(plan, revolution, line);
+      const std::int64_t slot =
+          reverse ? plan.line.reverse_first_slot + plan.line.pixels - 1 - pixel : plan.line.forward_first_slot + pixel;
+      const std::int64_t tick = (revolution * plan.rotary.lines_per_revolution + line) * plan.line.ticks +
+                                slot * plan.clock.ticks_per_slot + (reverse ? plan.line.offset_remainder_ticks : 0);
       const Rational ideal =
           plan.rotary.edges_per_revolution * ratio(tick, plan.line.ticks) / plan.rotary.lines_per_revolution;
       const Rational leads = Rational(Integer(check.register_edges(tick))) - ideal;

@@ -55,8 +55,9 @@ struct ErrorBudget {
   /// Largest distance of the surface from focus, all terms that lift it together; none where the scanner is not known
   /// or the term is off.
   std::optional<double> defocus_max_um;
-  /// The bound with this term alone, by ErrorTerm; 0 where it is off, none where it cannot be known. For defocus the
-  /// distance of the surface from focus by the geometry of the line: no part of max_um.
+  /// The bound with this term alone, by ErrorTerm; 0 where it is off (for the scanner's also below 1e-9, the arithmetic
+  /// of the geometry), none where it cannot be known. For defocus the distance of the surface from focus by the
+  /// geometry of the line: no part of max_um.
   std::array<std::optional<double>, kErrorTerms> budget_um;
   std::vector<std::string> notes;
 };

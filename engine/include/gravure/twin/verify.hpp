@@ -7,6 +7,7 @@
 
 #include "gravure/core/layer_lines.hpp"
 #include "gravure/core/progress.hpp"
+#include "gravure/twin/error_budget.hpp"
 #include "gravure/twin/exposure.hpp"
 
 namespace gravure {
@@ -62,10 +63,18 @@ struct VerifyReport {
   double ab_step_um = 0;  ///< one A-B edge on the surface
 
   std::optional<CarriageReport> carriage;  ///< helical jobs
+  std::optional<ErrorBudget> error;        ///< where one was asked for
 
   std::int64_t ticks = 0;               ///< the device took
   std::vector<std::string> violations;  ///< each once; empty: within limits
   std::vector<std::string> notes;
+};
+
+/// Asks for an error budget, and what it is judged by; limits that are absent are not.
+struct BudgetOptions {
+  TwinSettings twin;
+  std::optional<Rational> landing_um;
+  std::optional<Rational> defocus_um;
 };
 
 struct VerifyOptions {
@@ -73,11 +82,13 @@ struct VerifyOptions {
   int threads = 0;  ///< 0: one for each processor
   CancelToken* cancel = nullptr;
   Progress* progress = nullptr;
+  std::optional<BudgetOptions> budget = {};
 };
 
 /// Runs every line of every revolution through devices made by `devices`, puts what the gate let through back to pixels
 /// and compares it with `images` (none: said as a violation), and the axis at each line start with the plan's turning.
 /// The wanted turning comes from the plan's geometry (lines, slots, encoder, gear), not from its A-B solution.
+/// With `budget`, the landing of the pulses is bounded and sampled as error_budget() does and judged by its limits.
 /// Violations are reported, not errors; errors are an unreadable program, a memory budget too small for one worker (out
 /// of range, naming what is needed) and cancellation. An image that cannot be read is a violation, too, and all others
 /// are still compared. `programs` opens the program once for each worker; fewer run where memory does not suffice.

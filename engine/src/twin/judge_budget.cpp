@@ -1,0 +1,92 @@
+#include "judge_budget.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "figure.hpp"
+#include "gravure/scan/plan_trajectory.hpp"
+
+namespace gravure {
+namespace {
+
+std::string text_of(const PulsePlace& place) {
+  return "revolution " + std::to_string(place.revolution) + ", line " + std::to_string(place.line) + ", slot " +
+         std::to_string(place.slot);
+}
+
+/// The term that alone does most to the landing of pulses.
+ErrorTerm largest_term(const ErrorBudget& budget) {
+  ErrorTerm largest = ErrorTerm::drift;
+  double most = -1;
+  for (const ErrorTerm term : kAllErrorTerms) {
+    const double um = budget.budget_um[static_cast<std::size_t>(term)].value_or(0);
+    if (term != ErrorTerm::defocus && um > most) {
+      most = um;
+      largest = term;
+    }
+  }
+  return largest;
+}
+
+void judge_landing(const ErrorBudget& budget, const Rational& limit_um, bool has_scanner, VerifyReport& report) {
+  if (budget.max_um > to_double(limit_um)) {
+    report.violations.push_back(
+        "a pulse may land " + figure(budget.max_um) +
+        " um from its target, which exceeds limits.landing_um = " + to_decimal_string(limit_um) +
+        ": the largest term is " + std::string(term_name(largest_term(budget))) + "; the worst simulated pulse, at " +
+        text_of(budget.worst) + ", is off by " + figure(budget.simulated_max_um) + " um");
+  }
+  if (!has_scanner) {
+    report.violations.emplace_back(
+        "limits.landing_um cannot be judged without the scanner: give scanner.field_mm, or take the limit out");
+  }
+}
+
+void judge_defocus(const ErrorBudget& budget, const Rational& limit_um, VerifyReport& report) {
+  if (!budget.defocus_max_um) {
+    report.violations.emplace_back(
+        "limits.defocus_um cannot be judged: give scanner.field_mm and leave twin.defocus enabled, or take the limit "
+        "out");
+  } else if (*budget.defocus_max_um > to_double(limit_um)) {
+    report.violations.push_back("the surface is up to " + figure(*budget.defocus_max_um) +
+                                " um from focus, which exceeds limits.defocus_um = " + to_decimal_string(limit_um) +
+                                ": take more lines or a shorter marking window");
+  }
+}
+
+}  // namespace
+
+Result<void> judge_budget(const std::function<Result<std::unique_ptr<LineSource>>()>& programs, const Plan& plan,
+                          const VerifyOptions& options, VerifyReport& report) {
+  const BudgetOptions& asked = *options.budget;
+  ErrorBudgetRequest request;
+  request.twin = asked.twin;
+  request.threads = options.threads;
+  request.cancel = options.cancel;
+  std::optional<scan::LineTrajectory> trajectory;
+  if (plan.scanner) {
+    Result<scan::LineTrajectory> made = scan::plan_trajectory(plan);
+    if (made) {
+      trajectory = std::move(made).value();
+      request.trajectory = &*trajectory;
+    } else {
+      report.notes.push_back("the scanner has no path for these lines: " + made.error().message);
+    }
+  }
+  Result<ErrorBudget> budget = error_budget(programs, request);
+  if (!budget && budget.error().code == ErrorCode::out_of_range) {
+    report.violations.push_back("no error budget: " + budget.error().message);
+    return {};
+  }
+  GRAVURE_TRY(report.error, std::move(budget));
+  report.notes.insert(report.notes.end(), report.error->notes.begin(), report.error->notes.end());
+  if (asked.landing_um) {
+    judge_landing(*report.error, *asked.landing_um, trajectory.has_value(), report);
+  }
+  if (asked.defocus_um) {
+    judge_defocus(*report.error, *asked.defocus_um, report);
+  }
+  return {};
+}
+
+}  // namespace gravure
