@@ -116,6 +116,10 @@ std::string trajectory_text(const scan::LineTrajectory& trajectory) {
       "{:.4g} um\n",
       "landing", quality.along_um, quality.across_um, quality.defocus_um, quality.incidence_deg,
       trajectory.resolution_mm * 1000);
+  if (trajectory.options.field_grid) {
+    text += fmt::format("{:<10}field grid undone; interpolation between its nodes adds {:.3g} um at most, estimated\n",
+                        "grid", trajectory.field_grid_error_um);
+  }
   return text;
 }
 

@@ -46,7 +46,7 @@ Result<GridPoint> order_for(const FieldGrid& grid, const GridPoint& place, bool 
   GRAVURE_TRY(const GridPoint landed, grid.lands_at(edge));
   if (edge.u_mm == place.u_mm && edge.v_mm == place.v_mm) {
     if (const auto order = grid.command_for(place)) {
-      return order;
+      return order.value();
     }
   }
   return GridPoint{place.u_mm - (landed.u_mm - edge.u_mm), place.v_mm - (landed.v_mm - edge.v_mm)};

@@ -146,6 +146,17 @@ TEST(Landing, LongMicrovectorsLeaveChordsOnTheArc) {
   EXPECT_GE(trajectory.quality.interpolation_um, std::abs(across_um));
 }
 
+TEST(Landing, OfReverseLinesIsLaterByTheRemainderOfTheOffset) {
+  LineTiming timing = roller_timing();
+  timing.offset_remainder_ticks = 41;  // half a slot, so half a pixel of 8 um
+  const LineTrajectory trajectory = made(timing, roller_geometry(timing));
+  const LandingModel exact{0, false, true};
+  for (const std::int64_t pixel : {0, 1700, 3499}) {
+    EXPECT_NEAR(landing_error(trajectory, Direction::forward, pixel, exact).along_um, 0, 1e-6);
+    EXPECT_NEAR(landing_error(trajectory, Direction::reverse, pixel, exact).along_um, -4, 1e-6);
+  }
+}
+
 TEST(Landing, HoldsOffAxisWithTheIncidenceReported) {
   const LineTiming timing = roller_timing();
   CylinderLines lines = roller_lines();
