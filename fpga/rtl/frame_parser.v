@@ -1,15 +1,16 @@
 // Frame parser: bytes from the host -> verified lines.
 //
-// A frame is 0xA5, revolution, line, first slot (64 bits each, little endian), the window's packed bits, and the CRC-32C of
-// all that but the 0xA5 (little endian). Payload goes to the FIFO on trial; a frame that is in sequence, in shape and
+// A frame is the mark 0xA5, "GRV", its kind (1: a line), sequence, revolution, line, first slot and length (32 bits each,
+// little endian), the window's packed bits (`length` bytes), and the CRC-32C of all that but the mark. Sequence counts the
+// frames since position_load or reset. Payload goes to the FIFO on trial; a frame that is in sequence, in shape and
 // whole is committed, any other is rolled back and stops the parser: it takes no byte until clear. Faults are sticky
 // until clear; of several in one frame the first of sequence, shape, checksum is reported.
 // `odd` belongs to the line committed last: its number, counted from the job's first line, is odd.
-// position_load sets the line that must come next (after clear, before a job).
+// position_load sets the line that must come next (after clear, before a job), as frame 0.
 // Latency: commit or fault VERDICT_LATENCY after the frame's last byte; line_valid on the same clock as
 // commit. window_slots is to stand for two clocks before a frame and to its end, the other settings and the position for
 // two clocks before its last byte.
-// Reset: waiting for revolution 0, line 0.
+// Reset: waiting for frame 0, revolution 0, line 0.
 `default_nettype none
 module frame_parser (
     input wire clk,
@@ -36,13 +37,15 @@ module frame_parser (
     output reg [31:0] revolution,
     output reg [31:0] line
 );
-  localparam [7:0] KIND = 8'hA5;
+  localparam [7:0] MARK = 8'hA5;
+  localparam [31:0] KIND = 32'h01_56_52_47;  // "GRV", a line
   localparam [1:0] IDLE = 2'd0, HEAD = 2'd1, BITS = 2'd2, CHECK = 2'd3;
 
   reg [1:0] state;
   reg [20:0] place;  // byte within the part
   reg bad_sequence, bad_shape, bad_checksum;
   reg [23:0] new_first_slot;
+  reg [31:0] sequence_number;
 
   wire stopped = sequence_error || shape_error || checksum_error;
   reg ended;  // the last byte was taken on the clock before; the next frame may begin already
@@ -69,12 +72,15 @@ module frame_parser (
   );
 `endif
 
-  wire [2:0] byte_number = place[2:0];
-  wire [63:0] expected_revolution = {32'd0, revolution};
-  wire [63:0] expected_line = {32'd0, line};
-  wire wrong_revolution = byte_data != expected_revolution[8*byte_number+:8];
-  wire wrong_line = byte_data != expected_line[8*byte_number+:8];
-  wire wrong_crc = byte_data != crc[8*byte_number[1:0]+:8];
+  wire [127:0] expected = {line, revolution, sequence_number, KIND};
+  wire [31:0] expected_length = {11'd0, window_bytes};
+  // Head bytes are compared a clock late: their verdict is not asked for before the checksum is through.
+  reg compare;
+  reg [4:0] head_place;
+  reg [7:0] head_byte;
+  wire wrong = compare && head_byte != expected[8*head_place[3:0]+:8];
+  wire wrong_length = compare && head_byte != expected_length[8*head_place[1:0]+:8];
+  wire wrong_crc = byte_data != crc[8*place[1:0]+:8];
   wire frame_end = take && state == CHECK && place == 3;
 
   always @(posedge clk) begin
@@ -85,6 +91,9 @@ module frame_parser (
     next_line <= line + 32'd1;
     last_line <= next_line >= lines_per_revolution;
     ended <= frame_end && !rst && !clear;
+    compare <= take && state == HEAD && !rst && !clear;
+    head_place <= place[4:0];
+    head_byte <= byte_data;
   end
 
   always @(posedge clk) begin
@@ -109,8 +118,12 @@ module frame_parser (
         odd <= 1'b0;
         revolution <= 0;
         line <= 0;
+        sequence_number <= 0;
       end
     end else begin
+      if (head_place[4:2] == 3'd0 && wrong) bad_shape <= 1'b1;
+      if (!head_place[4] && head_place[3:2] != 2'd0 && wrong) bad_sequence <= 1'b1;
+      if (head_place[4] && head_place[2] && wrong_length) bad_shape <= 1'b1;
       if (ended) begin
         commit <= !bad;
         line_valid <= !bad;
@@ -120,6 +133,7 @@ module frame_parser (
         checksum_error <= !bad_sequence && !bad_shape && window_fits && bad_checksum;
         if (!bad) begin
           first_slot <= new_first_slot;
+          sequence_number <= sequence_number + 32'd1;
           odd <= (revolution[0] && lines_per_revolution[0]) ^ line[0];
           line <= last_line ? 32'd0 : next_line;
           if (last_line) revolution <= revolution + 32'd1;
@@ -133,16 +147,14 @@ module frame_parser (
             bad_sequence <= 1'b0;
             bad_shape <= 1'b0;
             bad_checksum <= 1'b0;
-            if (byte_data == KIND) state <= HEAD;
+            if (byte_data == MARK) state <= HEAD;
             else shape_error <= 1'b1;
           end
           HEAD: begin
-            if (place[4:3] == 2'd0 && wrong_revolution) bad_sequence <= 1'b1;
-            if (place[4:3] == 2'd1 && wrong_line) bad_sequence <= 1'b1;
             if (place == 16) new_first_slot[7:0] <= byte_data;
             if (place == 17) new_first_slot[15:8] <= byte_data;
             if (place == 18) new_first_slot[23:16] <= byte_data;
-            if (place >= 19 && byte_data != 0) bad_shape <= 1'b1;
+            if (place == 19 && byte_data != 0) bad_shape <= 1'b1;
             if (place == 23) begin
               place <= 0;
               state <= window_slots == 0 ? CHECK : BITS;
@@ -167,6 +179,7 @@ module frame_parser (
     if (position_load && !rst) begin
       revolution <= position_revolution;
       line <= position_line;
+      sequence_number <= 0;
     end
   end
 

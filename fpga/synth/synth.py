@@ -5,7 +5,7 @@ usage: synth.py [--seeds N] [--floor] [--rtl FOLDER] [DESIGN...]
 
 designs.txt lists the designs. iCE40 HX8K: yosys and nextpnr-ice40, N seeds (default 5); figures are estimates of nextpnr
 after routing, minimum / median / maximum over the seeds. ECP5: yosys alone, so no speed. With --floor only the designs
-that have one are run, one seed each, and a clock below its floor is a failure.
+that have one are run, with the seed that designs.txt names, and a clock below its floor is a failure.
 Exit status: 0 done, 1 below the floor or a tool failed, 77 a tool is missing (said on stdout)."""
 
 import argparse
@@ -33,8 +33,9 @@ def read_designs():
         words = line.split("#")[0].split()
         if words:
             floors = dict(word[6:].split("=") for word in words[2:] if word.startswith("floor:"))
+            seed = int(floors.pop("seed", 1))
             parameters = [word.split("=") for word in words[2:] if not word.startswith("floor:")]
-            designs.append((words[0], words[1], parameters, {clock: float(mhz) for clock, mhz in floors.items()}))
+            designs.append((words[0], words[1], parameters, seed, {clock: float(mhz) for clock, mhz in floors.items()}))
     return designs
 
 
@@ -78,9 +79,10 @@ def show_speeds(name, results, floors):
     for clock in sorted(results[0][0]):
         speeds = sorted(result[0][clock] for result in results)
         text = f"{speeds[0]:.0f} / {statistics.median(speeds):.0f} / {speeds[-1]:.0f} MHz"
+        each = ", by seed: " + " ".join(f"{result[0][clock]:.1f}" for result in results) if len(results) > 1 else ""
         verdict = "closes" if statistics.median(speeds) >= TARGET_MHZ[clock] else "DOES NOT CLOSE"
         print(f"{name:14} iCE40 HX8K {clock:8} {text:26} {verdict} {TARGET_MHZ[clock]} MHz in the median of "
-              f"{len(results)}", flush=True)
+              f"{len(results)}{each}", flush=True)
         if clock in floors and speeds[0] < floors[clock]:
             print(f"{name}: {clock} {speeds[0]:.1f} MHz is below its floor of {floors[clock]:.0f} MHz")
             slow = 1
@@ -105,14 +107,14 @@ def main():
         return 77
     rtl = arguments.rtl.resolve()
     slow = 0
-    for name, module, parameters, floors in read_designs():
+    for name, module, parameters, floor_seed, floors in read_designs():
         if (arguments.names and name not in arguments.names) or (arguments.floor and not floors):
             continue
         with tempfile.TemporaryDirectory() as temporary:
             folder = pathlib.Path(temporary)
             synthesise(ICE40, module, parameters, rtl, folder, "ice40.json")
-            seeds = 1 if arguments.floor else arguments.seeds
-            results = [place(folder, "ice40.json", seed) for seed in range(1, seeds + 1)]
+            seeds = [floor_seed] if arguments.floor else range(1, arguments.seeds + 1)
+            results = [place(folder, "ice40.json", seed) for seed in seeds]
             print(f"{name:14} iCE40 HX8K {results[0][2]}: {count_cells(folder / 'ice40.json', CELLS['ice40'])}", flush=True)
             slow |= show_speeds(name, results, floors if arguments.floor else {})
             if not arguments.floor:

@@ -17,18 +17,21 @@ class FrameMaker {
     slots_ = slots;
     window_ = window;
     lines_ = lines;
-    revolution_ = line_ = 0;
+    restart_at_zero();
   }
-  void restart_at_zero() { revolution_ = line_ = 0; }
+  void restart_at_zero() { revolution_ = line_ = sequence_ = 0; }
   std::uint64_t revolution() const { return revolution_; }
   std::uint64_t line() const { return line_; }
 
   std::vector<std::uint8_t> next(Dice& dice, Damage damage) {
     bytes_.clear();
     append(0xA5, 1);
-    append(revolution_, 8);
-    append(line_, 8);
-    append(dice.word() % (slots_ - window_ + 1), 8);
+    append(0x01565247, 4);
+    append(sequence_, 4);
+    append(revolution_, 4);
+    append(line_, 4);
+    append(dice.word() % (slots_ - window_ + 1), 4);
+    append((window_ + 7) / 8, 4);
     for (std::uint64_t slot = 0; slot < window_; slot += 8) {
       const std::uint64_t unused = slot + 8 > window_ ? slot + 8 - window_ : 0;
       append((dice.word() << unused) & 0xFFU, 1);
@@ -42,6 +45,7 @@ class FrameMaker {
     }
     line_ = line_ + 1 >= lines_ ? 0 : line_ + 1;
     revolution_ += line_ == 0 ? 1 : 0;
+    ++sequence_;
     return bytes_;
   }
 
@@ -64,7 +68,7 @@ class FrameMaker {
   }
 
   std::vector<std::uint8_t> bytes_;
-  std::uint64_t revolution_ = 0, line_ = 0;
+  std::uint64_t revolution_ = 0, line_ = 0, sequence_ = 0;
   std::uint64_t slots_ = 1, window_ = 0, lines_ = 1;
 };
 

@@ -1,11 +1,13 @@
 #include "gravure/fpga/frame_parser.hpp"
 
+#include <utility>
+
 namespace gravure::fpga {
 namespace {
 
 constexpr unsigned kPlaceMask = 0x1F'FFFF;
 
-std::uint8_t byte_of(std::uint64_t word, unsigned number) noexcept {
+std::uint8_t byte_of(std::uint32_t word, unsigned number) noexcept {
   return static_cast<std::uint8_t>(word >> (8 * number));
 }
 
@@ -14,6 +16,7 @@ std::uint8_t byte_of(std::uint64_t word, unsigned number) noexcept {
 void FrameParser::reset(bool all) noexcept {
   part_ = Part::idle;
   place_ = 0;
+  compare_ = false;
   ended_ = false;
   bad_sequence_ = bad_shape_ = bad_checksum_ = false;
   new_first_slot_ = 0;
@@ -21,6 +24,7 @@ void FrameParser::reset(bool all) noexcept {
   out_.rollback = true;
   if (all) {
     out_ = {.rollback = true};
+    sequence_ = 0;
   }
 }
 
@@ -29,23 +33,34 @@ void FrameParser::enter(Part part) noexcept {
   place_ = 0;
 }
 
-void FrameParser::take_head(const Inputs& in, unsigned place) noexcept {
-  if (place < 8) {
-    bad_sequence_ = bad_sequence_ || in.in_data != byte_of(out_.revolution, place);
-  } else if (place < 16) {
-    bad_sequence_ = bad_sequence_ || in.in_data != byte_of(out_.line, place - 8);
-  } else if (place == 16) {
-    new_first_slot_ = (new_first_slot_ & 0xFFFF00U) | in.in_data;
-  } else if (place == 17) {
-    new_first_slot_ = (new_first_slot_ & 0xFF00FFU) | (static_cast<unsigned>(in.in_data) << 8U);
-  } else if (place == 18) {
-    new_first_slot_ = (new_first_slot_ & 0x00FFFFU) | (static_cast<unsigned>(in.in_data) << 16U);
-  } else {
-    bad_shape_ = bad_shape_ || in.in_data != 0;
+void FrameParser::take_first_slot(std::uint8_t byte, unsigned number) noexcept {
+  if (number == 3) {
+    bad_shape_ = bad_shape_ || byte != 0;
+    return;
   }
-  if (place == 23) {
+  const unsigned shift = 8 * number;
+  new_first_slot_ = (new_first_slot_ & ~(0xFFU << shift)) | (std::uint32_t{byte} << shift);
+}
+
+void FrameParser::take_head(const Inputs& in, unsigned place) noexcept {
+  compare_ = true;
+  head_place_ = place;
+  head_byte_ = in.in_data;
+  if (place / 4 == 4) {
+    take_first_slot(in.in_data, place % 4);
+  }
+  if (place == kHeadBytes - 1) {
     enter(in.window_slots == 0 ? Part::check : Part::bits);
   }
+}
+
+/// The clock after a byte of the head.
+void FrameParser::compare_head() noexcept {
+  const std::uint32_t expected[] = {kKind, sequence_, out_.revolution, out_.line, 0, sums_.window_bytes};
+  const unsigned field = head_place_ / 4;
+  const bool wrong = field != 4 && head_byte_ != byte_of(expected[field], head_place_ % 4);
+  bool& flag = field >= 1 && field <= 3 ? bad_sequence_ : bad_shape_;
+  flag = flag || wrong;
 }
 
 void FrameParser::take_bits(const Inputs& in, unsigned place) noexcept {
@@ -70,6 +85,7 @@ void FrameParser::judge(const Inputs& in) noexcept {
     return;
   }
   out_.first_slot = new_first_slot_;
+  ++sequence_;
   out_.odd = (((out_.revolution & in.lines_per_revolution) ^ out_.line) & 1U) != 0;
   out_.line = last_line_ ? 0 : sums_.next_line;
   out_.revolution += last_line_ ? 1U : 0U;
@@ -89,7 +105,7 @@ void FrameParser::take(const Inputs& in, std::uint32_t crc) noexcept {
   switch (part_) {
     case Part::idle:
       bad_sequence_ = bad_shape_ = bad_checksum_ = false;
-      out_.shape_error = in.in_data != kFrameKind;
+      out_.shape_error = in.in_data != kMark;
       enter(out_.shape_error ? Part::idle : Part::head);
       break;
     case Part::head:
@@ -129,6 +145,9 @@ FrameParser::Outputs FrameParser::step(const Inputs& now) noexcept {
   if (in.rst || in.clear) {
     reset(in.rst);
   } else {
+    if (std::exchange(compare_, false)) {
+      compare_head();
+    }
     if (ended_) {
       judge(in);
     }
@@ -143,6 +162,7 @@ FrameParser::Outputs FrameParser::step(const Inputs& now) noexcept {
   if (in.position_load && !in.rst) {
     out_.revolution = in.position_revolution;
     out_.line = in.position_line;
+    sequence_ = 0;
   }
   return out_;
 }

@@ -1,8 +1,10 @@
 #include "gravure/emulator/board_host.hpp"
 
+#include <array>
 #include <string>
 
 #include "device_checks.hpp"
+#include "gravure/core/crc32c.hpp"
 #include "gravure/fpga/frame_parser.hpp"
 #include "gravure/fpga/register_map.hpp"
 
@@ -12,7 +14,7 @@ namespace {
 using fpga::AbGenerator;
 
 constexpr std::uint64_t kSeedClock = AbGenerator::kClockMultiplier;
-constexpr std::uint64_t kFrameOverhead = 1 + 3 * 8 + 4;  ///< kind, revolution, line, first slot; checksum
+constexpr std::uint64_t kFrameOverhead = fpga::FrameParser::kFrameBytes;
 /// Seed clocks from `go` to tick 0 of the first line: room for two frames and more.
 constexpr std::uint64_t kLead = 64;
 
@@ -153,9 +155,9 @@ Result<void> BoardHost::byte(std::uint8_t data) {
   return wires_(in, kSeedClock);
 }
 
-Result<void> BoardHost::word(std::uint64_t data, int bytes) {
-  for (int at = 0; at < bytes; ++at) {
-    GRAVURE_CHECK(byte(static_cast<std::uint8_t>(data >> static_cast<unsigned>(8 * at))));
+Result<void> BoardHost::bytes(std::span<const std::byte> data) {
+  for (const std::byte each : data) {
+    GRAVURE_CHECK(byte(std::to_integer<std::uint8_t>(each)));
   }
   return {};
 }
@@ -177,15 +179,27 @@ Result<void> BoardHost::send(const LineFrame& frame) {
   return put(earlier);
 }
 
+/// As fpga::FrameParser takes it. What was wrong with the checksum of the frame is wrong on the wire, too.
 Result<void> BoardHost::put(const LineFrame& frame) {
-  GRAVURE_CHECK(byte(fpga::FrameParser::kFrameKind));
-  GRAVURE_CHECK(word(static_cast<std::uint64_t>(frame.revolution), 8));
-  GRAVURE_CHECK(word(static_cast<std::uint64_t>(frame.line), 8));
-  GRAVURE_CHECK(word(static_cast<std::uint64_t>(frame.first_slot), 8));
-  for (const std::byte bits : frame.bits) {
-    GRAVURE_CHECK(byte(std::to_integer<std::uint8_t>(bits)));
+  std::array<std::byte, fpga::FrameParser::kHeadBytes> head;
+  std::size_t at = 0;
+  for (const std::uint32_t field :
+       {fpga::FrameParser::kKind, static_cast<std::uint32_t>(sent_ - 1), static_cast<std::uint32_t>(frame.revolution),
+        static_cast<std::uint32_t>(frame.line), static_cast<std::uint32_t>(frame.first_slot),
+        static_cast<std::uint32_t>(frame.bits.size())}) {
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+      head[at++] = static_cast<std::byte>(field >> shift);
+    }
   }
-  return word(frame.crc32c, 4);
+  const std::uint32_t crc = ~crc32c_continue(crc32c_continue(kCrc32cStart, head), frame.bits);
+  GRAVURE_CHECK(byte(fpga::FrameParser::kMark));
+  GRAVURE_CHECK(bytes(head));
+  GRAVURE_CHECK(bytes(frame.bits));
+  const std::uint32_t sent = crc ^ frame.crc32c ^ frame_crc32c(frame);
+  for (unsigned shift = 0; shift < 32; shift += 8) {
+    GRAVURE_CHECK(byte(static_cast<std::uint8_t>(sent >> shift)));
+  }
+  return {};
 }
 
 Result<void> BoardHost::finish() {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 
 #include "gravure/core/device_link.hpp"
 #include "gravure/core/error.hpp"
@@ -60,7 +61,7 @@ class BoardHost {
   bool is_backward(const LineFrame& frame) const;
   Result<void> put(const LineFrame& frame);
   Result<void> byte(std::uint8_t data);
-  Result<void> word(std::uint64_t data, int bytes);
+  Result<void> bytes(std::span<const std::byte> data);
 
   int fifo_bits_;
   Wires wires_;
