@@ -276,6 +276,28 @@ struct Run {
   std::optional<Json> rtl;
 };
 
+/// What the schedule of a channel put out before tick 0.
+Json spin_up_json(const SpinPlan& up, const AxisState& state) {
+  Json segments = Json::array();
+  for (const SpinSegment& segment : up.segments) {
+    segments.push_back({{"increment", json_integer(Integer(segment.increment))}, {"seeds", segment.seeds}});
+  }
+  return {{"segments", segments},
+          {"ticks", json_integer(Integer(up.ticks))},
+          {"edges", json_integer(Integer(state.edges))},
+          {"planned_counts", json_integer(up.counts)},
+          {"counts", json_integer(Integer((Integer(state.counts_high) << 64U) + Integer(state.counts_low)))}};
+}
+
+std::string spin_up_text(const char* name, const SpinPlan& up, const AxisState& state) {
+  std::string text = fmt::format("{}: spun up by {} segments in {} ticks, {} A-B edges before line 0\n", name,
+                                 up.segments.size(), up.ticks, state.edges);
+  for (const SpinSegment& segment : up.segments) {
+    text += fmt::format("  increment {:>10} for {:>10} seed clocks\n", segment.increment, segment.seeds);
+  }
+  return text;
+}
+
 void print_run(const EmulateOptions& options, const Command& command, const Plan& plan, const Run& run) {
   const DeviceStatus& status = run.status;
   const auto end = static_cast<std::uint64_t>(status.tick);
@@ -297,6 +319,12 @@ void print_run(const EmulateOptions& options, const Command& command, const Plan
                    {"axis", axis}};
     if (plan.carriage) {
       result["carriage"] = axis_json(registers_of(plan.carriage->ab), end);
+    }
+    if (plan.spin) {
+      result["spin_up"] = spin_up_json(plan.spin->up, status.axis_spun_up);
+    }
+    if (plan.carriage && plan.carriage->spin) {
+      result["carriage_spin_up"] = spin_up_json(plan.carriage->spin->up, status.carriage_spun_up);
     }
     result.update({{"fault", to_string(status.fault)},
                    {"fault_register", static_cast<int>(status.fault)},
@@ -327,6 +355,12 @@ void print_run(const EmulateOptions& options, const Command& command, const Plan
   if (plan.carriage) {
     text += fmt::format("carriage: {} A-B edges of the second channel\n", status.carriage.edges);
   }
+  if (plan.spin) {
+    text += spin_up_text("axis", plan.spin->up, status.axis_spun_up);
+  }
+  if (plan.carriage && plan.carriage->spin) {
+    text += spin_up_text("carriage", plan.carriage->spin->up, status.carriage_spun_up);
+  }
   for (const DarkLines& lines : run.dark) {
     text += fmt::format("dark from tick {} ({}) to {}: {} lines, fault register {} ({}): {}\n", lines.tick,
                         place_text(lines.first, plan), place_text(lines.last, plan), lines.last - lines.first + 1,
@@ -346,6 +380,17 @@ Result<TickWindow> window_of(EmulateOptions options, const Plan& plan) {
   return tick_window(options, static_cast<std::uint64_t>(plan.job.ticks));
 }
 
+/// Waves and the Verilog board begin with counters at 0 at tick 0.
+Result<void> check_spin_up(const EmulateOptions& options, const Plan& plan) {
+  const bool spun_up = plan.spin || (plan.carriage && plan.carriage->spin);
+  if (spun_up && (options.rtl || options.writes())) {
+    return Error{ErrorCode::bad_argument,
+                 "--rtl, --edges and --vcd show counters that begin at 0 with line 0; this program spins its axes up "
+                 "from rest: leave them out, or take the axis limits out of the job"};
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<int> run_program(const EmulateOptions& options, const Command& command) {
@@ -357,6 +402,7 @@ Result<int> run_program(const EmulateOptions& options, const Command& command) {
   GRAVURE_TRY(run.window, window_of(options, plan));
   GRAVURE_CHECK(
       emulator::check_backward_delay(plan.line.offset_remainder_ticks, plan.clock.fpga_hz / plan.clock.seed_hz));
+  GRAVURE_CHECK(check_spin_up(options, plan));
   GRAVURE_TRY(const Mistakes mistakes, mistakes_of(options, device_setup(plan, 0, 0)));
   const std::uint64_t end = static_cast<std::uint64_t>(plan.job.ticks);
   const bool windowed = options.from || options.to;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "gravure/core/exact.hpp"
@@ -49,6 +50,23 @@ std::string seam_text(const AbPlan& ab, bool flat) {
       to_string(*ab.lines_until_limit), to_string(ab.bound_lines_until_limit));
 }
 
+/// Where the first column of each band lies, from that of the image.
+std::string band_places(const BandsPlan& bands) {
+  constexpr std::int64_t kShown = 16;
+  std::string text;
+  for (std::int64_t band = 0; band < std::min(bands.count, kShown); ++band) {
+    text += (band == 0 ? "" : ", ") + number(bands.step_mm * Rational(band));
+  }
+  return text + (bands.count > kShown ? ", ... mm" : " mm") +
+         fmt::format(" along the axis; {} mm from one to the next", number(bands.step_mm));
+}
+
+std::string ramp_text(const SpinPlan& ramp, const char* unit) {
+  return fmt::format("{} segments, {} ticks = {:.6f} s, {:.9g} {}, at most {:.6g} {}/s^2, staircase within {:.3g} {}/s",
+                     ramp.segments.size(), ramp.ticks, to_double(ramp.duration_s), to_double(ramp.travel), unit,
+                     to_double(ramp.max_acceleration), unit, to_double(ramp.speed_error), unit);
+}
+
 /// How the images are laid side by side; nothing where they are not.
 std::string repeat_text(const LoadedJob& loaded) {
   const RepeatSettings& repeat = loaded.job.repeat;
@@ -83,6 +101,7 @@ std::string plan_text(const Plan& plan) {
   if (plan.bands) {
     row("bands", fmt::format("{} of {} pixels for {} columns, {} {} each", plan.bands->count, plan.line.pixels,
                              plan.bands->columns, plan.bands->revolutions_per_band, turns_name(plan)));
+    row("at", band_places(*plan.bands));
   }
   const std::string pitch = fmt::format("pitch {} um ({:.1f} DPI)", number(plan.rotary.line_pitch_um),
                                         25400.0 / to_double(plan.rotary.line_pitch_um));
@@ -96,6 +115,21 @@ std::string plan_text(const Plan& plan) {
   }
   row("A-B", counter_text(plan.ab));
   row("seam", seam_text(plan.ab, flat));
+  const auto spin_rows = [&](const AxisSpin& spin, const char* unit, bool turns) {
+    row("spin-up", ramp_text(spin.up, unit));
+    if (turns) {
+      row("start", fmt::format("line 0 at {} deg from the encoder index, where the axis stands before, {:+.3g} deg",
+                               number(spin.start_deg), to_double(spin.start_error_deg)));
+    }
+    row("spin-down", ramp_text(spin.down, unit));
+    if (turns || flat) {
+      row("in all", fmt::format("{:.3f} s with {}", to_double(spin.total_s),
+                                flat ? "a spin-up and a spin-down each pass" : "spin-up and spin-down"));
+    }
+  };
+  if (plan.spin) {
+    spin_rows(*plan.spin, flat ? "mm" : "deg", !flat);
+  }
   if (plan.carriage) {
     const CarriagePlan& carriage = *plan.carriage;
     row("carriage", fmt::format("{} columns = {} um a revolution, {} layers in windows of {} columns, {} columns, {} "
@@ -105,6 +139,9 @@ std::string plan_text(const Plan& plan) {
                                 number(carriage.travel_mm)));
     row("A-B 1", counter_text(carriage.ab));
     row("drift", seam_text(carriage.ab, flat));
+    if (carriage.spin) {
+      spin_rows(*carriage.spin, "mm", false);
+    }
   }
   return text;
 }
@@ -125,6 +162,13 @@ void add_plan(CLI::App& app, Command& command) {
         if (plan.contains("scanner")) {
           plan["scanner"]["trajectory"] =
               loaded.trajectory ? trajectory_json(loaded.trajectory->of_revolution(0)) : Json(nullptr);
+        }
+        if (const std::optional<BandsPlan>& bands = loaded.plan.bands) {
+          Json places = Json::array();
+          for (std::int64_t band = 0; band < bands->count; ++band) {
+            places.push_back(to_double(Rational(bands->step_mm * Rational(band))));
+          }
+          plan["bands"]["position_mm"] = places;
         }
         plan["image"] = {{"fires", polarity_name(image.fires)},
                          {"lines_along", image.lines_along == LinesAlong::rows ? "rows" : "columns"},

@@ -10,6 +10,7 @@
 #include "line_window.hpp"
 #include "plan_axis.hpp"
 #include "plan_exposures.hpp"
+#include "plan_spins.hpp"
 #include "plan_warnings.hpp"
 #include "violations.hpp"
 
@@ -236,6 +237,10 @@ Result<Plan> make_plan(const Job& job, std::int64_t columns, std::int64_t exposu
     plan.carriage->ab = ab_plan(job, plan, axes.back(), solutions.back());
   }
   plan.scanner = plan_scanner(job.scanner);
+  GRAVURE_CHECK(plan_spins(job, plan, violations));
+  if (!violations.none()) {
+    return violations.error();
+  }
   plan.warnings = plan_warnings(job, plan);
   return plan;
 }

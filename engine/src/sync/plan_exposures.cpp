@@ -108,8 +108,10 @@ std::int64_t plan_bands(const Job& job, std::int64_t columns, std::int64_t expos
   bands.columns = columns;
   bands.revolutions_per_band = exposures;
   plan.job.revolutions = exposures * bands.count;
+  const auto pixels = static_cast<std::int64_t>(ceil_of(ratio(columns, count)));
+  bands.step_mm = job.scanner.pixel_pitch_um * Rational(pixels) / Rational(1000);
   plan.bands = bands;
-  return static_cast<std::int64_t>(ceil_of(ratio(columns, count)));
+  return pixels;
 }
 
 }  // namespace

@@ -47,6 +47,14 @@ void warn_directions(const Job& job, const Plan& plan, std::vector<std::string>&
   }
 }
 
+void warn_start(const Job& job, const Plan& plan, std::vector<std::string>& warnings) {
+  if (plan.mode != Mode::flat && job.rotary.start_angle_deg != 0 && !plan.spin) {
+    warnings.push_back("rotary.start_angle_deg = " + number_text(job.rotary.start_angle_deg) +
+                       " has no effect: only an axis that is spun up from the encoder index has a start angle; give "
+                       "rotary.max_speed_deg_s, max_acceleration_deg_s2 and max_jerk_deg_s3");
+  }
+}
+
 void warn_encoder(const Plan& plan, std::vector<std::string>& warnings) {
   const RotaryPlan& rotary = plan.rotary;
   if (rotary.edges_per_revolution < Rational(rotary.lines_per_revolution)) {
@@ -109,6 +117,7 @@ std::vector<std::string> plan_warnings(const Job& job, const Plan& plan) {
              "fpga.fractional = true has no drift at all", warnings);
   warn_pitch(job, plan, warnings);
   warn_directions(job, plan, warnings);
+  warn_start(job, plan, warnings);
   warn_encoder(plan, warnings);
   warn_scanner(job.scanner, warnings);
   if (plan.carriage) {

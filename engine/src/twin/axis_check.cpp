@@ -1,5 +1,7 @@
 #include "axis_check.hpp"
 
+#include "gravure/core/spin_phase.hpp"
+
 namespace gravure {
 namespace {
 
@@ -23,6 +25,7 @@ Rational lag_of(const AbPlan& ab) {
 struct AxisCheck::Demand {
   const char* name;
   const AbPlan& ab;
+  const std::optional<AxisSpin>& spin;
   Rational edges_per_revolution;
   Rational travel_um;         ///< in a revolution
   Rational largest_drift_um;  ///< from this on what is marked is in another's place
@@ -30,14 +33,14 @@ struct AxisCheck::Demand {
 };
 
 Result<AxisCheck> AxisCheck::make(const Plan& plan) {
-  return make(plan, {"axis", plan.ab, plan.rotary.edges_per_revolution, plan.rotary.circumference_um,
+  return make(plan, {"axis", plan.ab, plan.spin, plan.rotary.edges_per_revolution, plan.rotary.circumference_um,
                      plan.rotary.line_pitch_um / 2, plan.mode == Mode::flat});
 }
 
 Result<AxisCheck> AxisCheck::make_carriage(const Plan& plan) {
   const CarriagePlan& carriage = *plan.carriage;
-  return make(plan,
-              {"carriage", carriage.ab, carriage.edges_per_revolution, carriage.feed_um, plan.line.pixel_pitch_um / 2});
+  return make(plan, {"carriage", carriage.ab, carriage.spin, carriage.edges_per_revolution, carriage.feed_um,
+                     plan.line.pixel_pitch_um / 2});
 }
 
 Result<AxisCheck> AxisCheck::make(const Plan& plan, const Demand& demand) {
@@ -66,6 +69,7 @@ Result<AxisCheck> AxisCheck::make(const Plan& plan, const Demand& demand) {
   check.fraction_num_ = ab.fraction_num;
   check.fraction_den_ = ab.fraction_den;
   check.largest_lag_edges_ = lag_of(ab);
+  check.take_spin(ab, demand.spin);
   check.step_um_ = to_double(Rational(demand.travel_um / demand.edges_per_revolution));
   // Counts a line by the registers, over the counts it needs: what the counter gains.
   const Rational counts_per_line = counts_per_step(ab) * plan.line.ticks / Rational(Integer(ab.prescaler));
@@ -79,6 +83,22 @@ Result<AxisCheck> AxisCheck::make(const Plan& plan, const Demand& demand) {
   return check;
 }
 
+/// The state that the spin-up leaves at tick 0.
+void AxisCheck::take_spin(const AbPlan& ab, const std::optional<AxisSpin>& spin) {
+  if (!spin) {
+    return;
+  }
+  const SpinStart start = spin_start(ab, spin);
+  start_counts_ = start.counts;
+  start_accumulator_ = start.accumulator;
+  largest_lead_edges_ =
+      (Rational(Integer(start.counts)) + Rational(Integer(start.accumulator), Integer(ab.fraction_den))) /
+      Rational(Integer(1) << static_cast<unsigned>(ab.counter_bits - 2));
+  spun_up_high_ = static_cast<std::uint64_t>(Integer(spin->up.counts >> 64U));
+  spun_up_low_ = static_cast<std::uint64_t>(Integer(spin->up.counts & ~std::uint64_t{0}));
+  spun_up_edges_ = static_cast<std::uint64_t>(spin_edges(ab, spin->up));
+}
+
 /// The line with which the motion that line `ordinal` belongs to starts.
 std::int64_t AxisCheck::start_of(std::int64_t ordinal) const noexcept {
   return lines_per_start_ == 0 ? 0 : ordinal - ordinal % lines_per_start_;
@@ -86,9 +106,9 @@ std::int64_t AxisCheck::start_of(std::int64_t ordinal) const noexcept {
 
 std::uint64_t AxisCheck::register_edges(std::int64_t tick) const noexcept {
   const std::uint64_t steps = static_cast<std::uint64_t>(tick) / prescaler_;
-  UnsignedWide counts = static_cast<UnsignedWide>(steps) * increment_;
+  UnsignedWide counts = static_cast<UnsignedWide>(steps) * increment_ + start_counts_;
   if (fraction_num_ != 0) {
-    counts += static_cast<UnsignedWide>(steps) * fraction_num_ / fraction_den_;
+    counts += (static_cast<UnsignedWide>(steps) * fraction_num_ + start_accumulator_) / fraction_den_;
   }
   return static_cast<std::uint64_t>(counts >> counter_shift_);
 }

@@ -22,13 +22,22 @@ class AxisCheck {
   /// Device minus ideal at a line start, in edges: whole edges exact, the ideal's part below one edge to 1e-15.
   double error_edges(std::int64_t ordinal, const AxisState& axis) const;
   /// A-B edges the registers put out in `tick` FPGA ticks, at most 2^63 - 1: whole steps of the prescaler, each with
-  /// its increment and its share of the fraction, floor(counts / 2^(n-2)). Exact.
+  /// its increment and its share of the fraction, floor(counts / 2^(n-2)), with what the spin-up left of an edge and of
+  /// a count. Exact.
   std::uint64_t register_edges(std::int64_t tick) const noexcept;
   /// Device minus ideal at the start of line `ordinal` (the number of lines: the end of the last), exact.
   Rational exact_error_edges(std::int64_t ordinal, std::uint64_t edges) const;
   /// How far the edges may lag behind the drift: the edge that is about to come, with a prescaler the step that is, and
   /// the part of a count that the fraction has not filled. The lag is below this.
   const Rational& largest_lag_edges() const noexcept { return largest_lag_edges_; }
+  /// How far they may lead: what a spin-up left of an edge and of a count.
+  const Rational& largest_lead_edges() const noexcept { return largest_lead_edges_; }
+  /// Did the channel put out before tick 0 what the plan's spin-up is to?
+  bool spun_up_right(const AxisState& state) const noexcept {
+    return state.counts_high == spun_up_high_ && state.counts_low == spun_up_low_;
+  }
+  /// What it is to, for messages.
+  std::uint64_t spun_up_edges() const noexcept { return spun_up_edges_; }
   double step_um() const noexcept { return step_um_; }
   /// Does the drift add up over the revolutions of the job?
   bool accumulates() const noexcept { return lines_per_start_ == 0; }
@@ -44,6 +53,7 @@ class AxisCheck {
  private:
   struct Demand;
   static Result<AxisCheck> make(const Plan& plan, const Demand& demand);
+  void take_spin(const AbPlan& ab, const std::optional<AxisSpin>& spin);
   std::int64_t start_of(std::int64_t ordinal) const noexcept;
 
   const char* name_ = "axis";
@@ -57,6 +67,12 @@ class AxisCheck {
   std::uint64_t fraction_num_ = 0;
   std::uint64_t fraction_den_ = 1;
   Rational largest_lag_edges_ = 1;
+  Rational largest_lead_edges_ = 0;
+  std::uint64_t start_counts_ = 0;  ///< of an edge, at tick 0
+  std::uint64_t start_accumulator_ = 0;
+  std::uint64_t spun_up_high_ = 0;  ///< counts before tick 0
+  std::uint64_t spun_up_low_ = 0;
+  std::uint64_t spun_up_edges_ = 0;
   double step_um_ = 0;
   Rational drift_per_line_ = 0;
   std::int64_t first_misplaced_line_ = -1;

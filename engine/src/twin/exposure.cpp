@@ -12,6 +12,16 @@ std::size_t size(std::int64_t bytes) {
   return static_cast<std::size_t>(bytes);
 }
 
+std::vector<ScheduleSegment> schedule_of(const std::optional<AxisSpin>& spin) {
+  std::vector<ScheduleSegment> schedule;
+  if (spin) {
+    for (const SpinSegment& segment : spin->up.segments) {
+      schedule.push_back({segment.increment, static_cast<std::uint64_t>(segment.seeds)});
+    }
+  }
+  return schedule;
+}
+
 }  // namespace
 
 DeviceSetup device_setup(const Plan& plan, std::int64_t first_revolution, std::int64_t first_line) {
@@ -23,9 +33,11 @@ DeviceSetup device_setup(const Plan& plan, std::int64_t first_revolution, std::i
   setup.fraction_den = plan.ab.fraction_den;
   if (plan.carriage) {
     const AbPlan& carriage = plan.carriage->ab;
-    setup.carriage = {carriage.prescaler, carriage.increment, carriage.fraction_num, carriage.fraction_den};
+    setup.carriage = {carriage.prescaler, carriage.increment, carriage.fraction_num, carriage.fraction_den,
+                      schedule_of(plan.carriage->spin)};
   }
   setup.clock_multiplier = plan.clock.ticks_per_slot / plan.clock.pulse_divider;
+  setup.spin_up = schedule_of(plan.spin);
   setup.ticks_per_slot = plan.clock.ticks_per_slot;
   setup.slots_per_line = plan.line.slots;
   setup.window_slots = plan.line.pixels;

@@ -55,7 +55,7 @@ std::optional<double> judge_drift(const Plan& plan, const AbPlan& ab, const Rati
                          edges_per_revolution / plan.rotary.lines_per_revolution;
   // Where a motion starts between two edges, the edge that began before belongs to it: one more or less.
   const Rational begun = axis.accumulates() ? 0 : 1;
-  if (measured > drift + begun || drift - measured >= axis.largest_lag_edges()) {
+  if (measured > drift + begun + axis.largest_lead_edges() || drift - measured >= axis.largest_lag_edges()) {
     report.violations.push_back(whose + "at the end of the last line the device's axis is " + figure(measured_um) +
                                 " um off, the plan's drift explains " + figure(to_double(drift) * axis.step_um()) +
                                 " um and less than " + figure(to_double(axis.largest_lag_edges()) * axis.step_um()) +

@@ -23,6 +23,10 @@ std::size_t size(std::int64_t bytes) {
   return static_cast<std::size_t>(bytes);
 }
 
+std::string counts_text(const AxisState& state) {
+  return to_string(Integer((Integer(state.counts_high) << 64U) + Integer(state.counts_low)));
+}
+
 /// The layers cut from one source image, and the revolutions that expose each.
 struct Group {
   std::vector<std::int64_t> layers;
@@ -222,6 +226,7 @@ class Verifier::Worker final : public PinObserver {
     landing_.start(chunk_.lines());
     Result<void> sent = device_->configure(device_setup(plan_, revolution, chunk_.first_line()));
     if (sent) {
+      see_spin_up();
       sent = chunk_.send(header_, revolution, *device_);
     }
     see_end();
@@ -253,6 +258,22 @@ class Verifier::Worker final : public PinObserver {
     }
     if (status.tick == plan_.job.ticks) {
       tally.end_edges = state.edges;
+    }
+  }
+
+  /// Where the schedules from rest have brought the axes at tick 0.
+  void see_spin_up() {
+    const DeviceStatus status = device_->status();
+    const auto see = [&](const AxisCheck& check, const AxisState& state, AxisTally& tally) {
+      if (!check.spun_up_right(state)) {
+        tally.wrong.add(0, "the spin-up ends after " + std::to_string(state.edges) + " A-B edges (" +
+                               counts_text(state) + " counts), the plan's after " +
+                               std::to_string(check.spun_up_edges()));
+      }
+    };
+    see(parent_.axes_.cross_scan, status.axis_spun_up, tally_.axis);
+    if (parent_.axes_.carriage) {
+      see(*parent_.axes_.carriage, status.carriage_spun_up, tally_.carriage);
     }
   }
 

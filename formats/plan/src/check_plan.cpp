@@ -4,6 +4,7 @@
 #include <string>
 
 #include "gravure/core/exposure_map.hpp"
+#include "gravure/core/spin_phase.hpp"
 
 namespace gravure::plan_json {
 namespace {
@@ -152,6 +153,8 @@ void check_bands(const Plan& plan, Complaint& complaint) {
   complaint.unless(bands.columns > plan.line.pixels, "bands.columns", "fit one band");
   complaint.equal("bands.count", bands.count, ceil_of(ratio(bands.columns, plan.line.pixels)));
   complaint.equal("job.revolutions", plan.job.revolutions, Integer(bands.count) * bands.revolutions_per_band);
+  complaint.equal("bands.step_mm", bands.step_mm,
+                  plan.line.pixel_pitch_um * Rational(plan.line.pixels) / Rational(1000));
 }
 
 void check_scanner(const Plan& plan, Complaint& complaint) {
@@ -239,6 +242,85 @@ void check_drift(const Plan& plan, const Channel& channel, Complaint& complaint)
                   floor_of(Rational(2) * Rational(ab.increment) * limit_lines));
 }
 
+constexpr std::int64_t kMostSeeds = 4'294'967'295;  // the board's schedule_seeds and first_tick
+
+constexpr std::int64_t kMostTicksPerSeed = 1'000'000;
+
+/// An axis that is spun up and down: its channel and what a degree or mm of it is.
+struct SpinChannel {
+  const AbPlan& ab;
+  const AxisSpin& spin;
+  std::string section;
+  Rational edges_per_unit;
+};
+
+/// The segments of a ramp, and the ticks they last together.
+Integer check_segments(const SpinChannel& channel, const SpinPlan& ramp, std::int64_t ticks_per_seed,
+                       const std::string& key, Complaint& complaint) {
+  Integer ticks = 0;
+  for (const SpinSegment& segment : ramp.segments) {
+    const bool stands = segment.increment == 0 && channel.ab.fraction_num == 0;
+    const Integer length = Integer(segment.seeds) * ticks_per_seed;
+    complaint.unless(segment.seeds >= 1 && segment.seeds <= kMostSeeds, key + "segments",
+                     "last 1 to " + std::to_string(kMostSeeds) + " seed clocks each");
+    complaint.unless(segment.increment <= channel.ab.increment, key + "segments", "are faster than marking");
+    complaint.unless(stands || length % Integer(channel.ab.prescaler) == 0, key + "segments",
+                     "are no whole steps of the prescaler");
+    ticks += length;
+  }
+  complaint.unless(!ramp.segments.empty(), key + "segments", "are none");
+  complaint.equal(key + "ticks", ramp.ticks, ticks);
+  return ticks;
+}
+
+/// Figures that follow from the segments; `before` is where the counter stands at their begin.
+void check_ramp(const Plan& plan, const SpinChannel& channel, const SpinPlan& ramp, const std::string& key,
+                const SpinPhase& before, Complaint& complaint) {
+  const std::int64_t ticks_per_seed = plan.clock.fpga_hz / plan.clock.seed_hz;
+  check_segments(channel, ramp, ticks_per_seed, key, complaint);
+  if (!complaint.none()) {
+    return;
+  }
+  const Integer edge = Integer(1) << static_cast<unsigned>(channel.ab.counter_bits - 2);
+  complaint.equal(key + "counts", ramp.counts,
+                  phase_after(channel.ab, ramp.segments, ticks_per_seed, before).counts - before.counts);
+  complaint.equal(key + "travel", ramp.travel, Rational(ramp.counts) / Rational(edge) / channel.edges_per_unit);
+  complaint.equal(key + "duration_s", ramp.duration_s, ratio(ramp.ticks, plan.clock.fpga_hz));
+}
+
+void check_spin(const Plan& plan, const SpinChannel& channel, Complaint& complaint) {
+  const std::int64_t ticks_per_seed = plan.clock.fpga_hz / plan.clock.seed_hz;
+  const AxisSpin& spin = channel.spin;
+  const bool flat = plan.mode == Mode::flat;
+  complaint.unless(ticks_per_seed <= kMostTicksPerSeed, "clock.fpga_hz", "is too many times clock.seed_hz for a spin");
+  if (!complaint.none()) {
+    return;
+  }
+  check_ramp(plan, channel, spin.up, channel.section + "up.", {}, complaint);
+  if (!complaint.none()) {
+    return;
+  }
+  complaint.unless(spin.up.ticks / ticks_per_seed <= kMostSeeds, channel.section + "up.ticks",
+                   "are more than the board counts to the first line");
+  SpinPhase phase = phase_after(channel.ab, spin.up.segments, ticks_per_seed, {});
+  phase =
+      phase_after(channel.ab, channel.ab.increment, flat ? plan.rotary.ticks_per_revolution : plan.job.ticks, phase);
+  check_ramp(plan, channel, spin.down, channel.section + "down.", phase, complaint);
+  const bool turns = !flat && &channel.ab == &plan.ab;
+  complaint.equal(channel.section + "start_error_deg", spin.start_error_deg,
+                  turns ? Rational(spin.up.travel - spin.start_deg) : Rational(0));
+  const std::int64_t motions = flat ? plan.job.revolutions : 1;
+  complaint.equal(channel.section + "total_s", spin.total_s,
+                  plan.job.duration_s + (spin.up.duration_s + spin.down.duration_s) * Rational(motions));
+}
+
+/// A degree of the workpiece, a mm of the stage.
+SpinChannel cross_scan_spin(const Plan& plan) {
+  const Rational units =
+      plan.mode == Mode::flat ? Rational(plan.rotary.circumference_um / Rational(1000)) : Rational(360);
+  return {plan.ab, *plan.spin, "spin.", plan.rotary.edges_per_revolution / units};
+}
+
 }  // namespace
 
 Result<void> check_plan(const Plan& plan) {
@@ -268,6 +350,18 @@ Result<void> check_plan(const Plan& plan) {
   channel({plan.ab, "ab.", plan.rotary.edges_per_revolution, plan.rotary.circumference_um});
   if (plan.carriage) {
     channel({plan.carriage->ab, "carriage.ab.", plan.carriage->edges_per_revolution, plan.carriage->feed_um});
+  }
+  if (plan.spin) {
+    part([&] { check_spin(plan, cross_scan_spin(plan), complaint); });
+  }
+  if (plan.carriage && plan.carriage->spin) {
+    const CarriagePlan& carriage = *plan.carriage;
+    part([&] {
+      check_spin(plan,
+                 {carriage.ab, *carriage.spin, "carriage.spin.",
+                  carriage.edges_per_revolution * Rational(1000) / carriage.feed_um},
+                 complaint);
+    });
   }
   return complaint.result();
 }

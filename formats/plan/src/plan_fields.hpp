@@ -85,6 +85,29 @@ void describe_ab(Archive& archive, P& ab) {
 }
 
 template <class Archive, class P>
+void describe_ramp(Archive& archive, P& ramp, bool linear) {
+  archive.field("segments", ramp.segments);
+  archive.field("ticks", ramp.ticks);
+  archive.field("counts", ramp.counts);
+  archive.field(linear ? "travel_mm" : "travel_deg", ramp.travel);
+  archive.field("duration_s", ramp.duration_s);
+  archive.field(linear ? "max_acceleration_mm_s2" : "max_acceleration_deg_s2", ramp.max_acceleration);
+  archive.field(linear ? "max_jerk_mm_s3" : "max_jerk_deg_s3", ramp.max_jerk);
+  archive.field(linear ? "speed_error_mm_s" : "speed_error_deg_s", ramp.speed_error);
+}
+
+template <class Archive, class P>
+void describe_spin(Archive& archive, P& spin, bool linear) {
+  archive.section("up", [&] { describe_ramp(archive, spin.up, linear); });
+  archive.section("down", [&] { describe_ramp(archive, spin.down, linear); });
+  if (!linear) {
+    archive.field("start_deg", spin.start_deg);
+    archive.field("start_error_deg", spin.start_error_deg);
+  }
+  archive.field("total_s", spin.total_s);
+}
+
+template <class Archive, class P>
 void describe_carriage(Archive& archive, P& carriage) {
   archive.field("feed_pixels", carriage.feed_pixels);
   archive.field("feed_um", carriage.feed_um);
@@ -98,6 +121,7 @@ void describe_carriage(Archive& archive, P& carriage) {
   archive.field("encoder_pitch_um", carriage.encoder_pitch_um);
   archive.field("interpolation_bits", carriage.interpolation_bits);
   archive.field("edges_per_revolution", carriage.edges_per_revolution);
+  archive.optional_section("spin", carriage.spin, [&](auto& spin) { describe_spin(archive, spin, true); });
 }
 
 template <class Archive, class P>
@@ -105,6 +129,7 @@ void describe_bands(Archive& archive, P& bands) {
   archive.field("count", bands.count);
   archive.field("columns", bands.columns);
   archive.field("revolutions_per_band", bands.revolutions_per_band);
+  archive.field("step_mm", bands.step_mm);
 }
 
 template <class Archive, class P>
@@ -141,6 +166,8 @@ void describe_plan(Archive& archive, P& plan) {
     archive.section("rotary", [&] { describe_rotary(archive, plan.rotary); });
   }
   archive.section("ab", [&] { describe_ab(archive, plan.ab); });
+  archive.optional_section("spin", plan.spin,
+                           [&](auto& spin) { describe_spin(archive, spin, plan.mode == Mode::flat); });
   archive.optional_section("carriage", plan.carriage, [&](auto& carriage) { describe_carriage(archive, carriage); });
   archive.optional_section("bands", plan.bands, [&](auto& bands) { describe_bands(archive, bands); });
   archive.optional_section("scanner", plan.scanner, [&](auto& scanner) { describe_scanner(archive, scanner); });

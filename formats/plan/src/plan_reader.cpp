@@ -142,6 +142,27 @@ void PlanReader::field(const char* key, std::vector<std::string>& value) {
   value = json->get<std::vector<std::string>>();
 }
 
+void PlanReader::field(const char* key, std::vector<SpinSegment>& value) {
+  const Json* json = find(key);
+  if (json == nullptr) {
+    return;
+  }
+  const auto is_pair = [](const Json& entry) { return entry.is_array() && entry.size() == 2; };
+  if (!json->is_array() || !std::all_of(json->begin(), json->end(), is_pair)) {
+    fail(key, "must be a list of pairs [increment, seed clocks]");
+    return;
+  }
+  for (const Json& entry : *json) {
+    const Integer increment = whole(key, entry[0]).value_or(-1);
+    const Integer seeds = whole(key, entry[1]).value_or(-1);
+    if (!fits_uint64(increment) || !fits_int64(seeds)) {
+      fail(key, "holds a pair beyond 64-bit integers");
+      return;
+    }
+    value.push_back({static_cast<std::uint64_t>(increment), static_cast<std::int64_t>(seeds)});
+  }
+}
+
 void PlanReader::field(const char* key, Mode& mode) {
   std::string name;
   field(key, name);

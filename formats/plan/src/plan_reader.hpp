@@ -24,6 +24,7 @@ class PlanReader {
   void field(const char* key, bool& value);
   void field(const char* key, std::string& value);
   void field(const char* key, std::vector<std::string>& value);
+  void field(const char* key, std::vector<SpinSegment>& value);
   void field(const char* key, Mode& mode);
   void field(const char* key, Integer& value);
   void field(const char* key, std::optional<Integer>& value);

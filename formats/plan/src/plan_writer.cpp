@@ -12,6 +12,14 @@ void PlanWriter::field(const char* key, Mode mode) {
   }
 }
 
+void PlanWriter::field(const char* key, const std::vector<SpinSegment>& value) {
+  Json list = Json::array();
+  for (const SpinSegment& segment : value) {
+    list.push_back({whole(segment.increment), whole(segment.seeds)});
+  }
+  here()[key] = std::move(list);
+}
+
 void PlanWriter::field(const char* key, const std::optional<Integer>& value) {
   here()[key] = value ? whole(*value) : Json(nullptr);
 }

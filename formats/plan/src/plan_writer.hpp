@@ -20,6 +20,7 @@ class PlanWriter {
   void field(const char* key, bool value) { here()[key] = value; }
   void field(const char* key, const std::string& value) { here()[key] = value; }
   void field(const char* key, const std::vector<std::string>& value) { here()[key] = value; }
+  void field(const char* key, const std::vector<SpinSegment>& value);
   void field(const char* key, Mode mode);
   void field(const char* key, const Integer& value) { here()[key] = whole(value); }
   void field(const char* key, const std::optional<Integer>& value);

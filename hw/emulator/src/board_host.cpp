@@ -103,6 +103,10 @@ bool BoardHost::is_backward(const LineFrame& frame) const {
 
 Result<void> BoardHost::start_lines(const DeviceSetup& setup, const Lines& lines) {
   GRAVURE_CHECK(check_board(setup));
+  if (!setup.spin_up.empty() || !setup.carriage.spin_up.empty()) {
+    return Error{ErrorCode::bad_argument,
+                 "the lines of a job whose axes are spun up from rest: this host starts its counters with line 0"};
+  }
   control_ = 1U | 2U | 8U | 16U;  // run slots, enable both axes, lines begin at the tick
   lines_per_revolution_ = setup.lines_per_revolution;
   constexpr std::uint64_t kAcknowledge = 1;

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "device_checks.hpp"
-#include "gravure/fpga/ab_edges.hpp"
 
 namespace gravure::emulator {
 namespace {
@@ -21,13 +20,6 @@ std::string hex32(std::uint32_t value) {
   return text;
 }
 
-AxisState axis_after(const fpga::AbRegisters& registers, std::int64_t tick) {
-  const fpga::AbPosition position = fpga::position_after(registers, static_cast<std::uint64_t>(tick));
-  return {.edges = position.edges,
-          .counts_high = static_cast<std::uint64_t>(position.counts >> 64U),
-          .counts_low = static_cast<std::uint64_t>(position.counts)};
-}
-
 }  // namespace
 
 std::string EmulatedDevice::place() const {
@@ -40,10 +32,15 @@ Result<void> EmulatedDevice::configure(const DeviceSetup& setup) {
                                         "\" stands and locks the registers; acknowledge it first (" + detail_ + ")"};
   }
   GRAVURE_CHECK(check_setup(setup));
+  const std::int64_t per_seed = setup.clock_multiplier;
+  GRAVURE_CHECK(check_schedule("spin_up", setup.spin_up, ab_registers_of(setup), per_seed));
+  GRAVURE_CHECK(check_schedule("carriage.spin_up", setup.carriage.spin_up, carriage_registers_of(setup), per_seed));
   fired_.assign(fpga::packed_bytes(static_cast<std::uint32_t>(setup.window_slots)), std::byte{0});
   setup_ = setup;
   ab_ = ab_registers_of(setup);
   carriage_ = carriage_registers_of(setup);
+  ab_start_ = run_schedule(setup.spin_up, ab_, per_seed);
+  carriage_start_ = run_schedule(setup.carriage.spin_up, carriage_, per_seed);
   ticks_per_line_ = setup.slots_per_line * setup.ticks_per_slot;
   revolution_ = setup.first_revolution;
   line_ = setup.first_line;
@@ -99,8 +96,8 @@ void EmulatedDevice::run_line(const LineFrame& frame, bool dark) {
                         .ordinal = ordinal_,
                         .first_slot = dark ? 0 : frame.first_slot,
                         .fired = fired_,
-                        .axis_at_start = axis_after(ab_, tick),
-                        .carriage_at_start = axis_after(carriage_, tick)});
+                        .axis_at_start = axis_after(ab_start_, ab_, tick),
+                        .carriage_at_start = axis_after(carriage_start_, carriage_, tick)});
   }
   ++ordinal_;
   if (++line_ == setup_.lines_per_revolution) {
@@ -160,11 +157,15 @@ DeviceStatus EmulatedDevice::status() const {
                       .tick = ordinal_ * ticks_per_line_,
                       .axis = {},
                       .carriage = {},
+                      .axis_spun_up = {},
+                      .carriage_spun_up = {},
                       .fault = fault_,
                       .detail = detail_};
   if (configured_) {
-    status.axis = axis_after(ab_, status.tick);
-    status.carriage = axis_after(carriage_, status.tick);
+    status.axis = axis_after(ab_start_, ab_, status.tick);
+    status.carriage = axis_after(carriage_start_, carriage_, status.tick);
+    status.axis_spun_up = spun_up(ab_start_, ab_);
+    status.carriage_spun_up = spun_up(carriage_start_, carriage_);
   }
   return status;
 }

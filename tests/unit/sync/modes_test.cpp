@@ -167,6 +167,7 @@ TEST(Bands, AreAsFewAsFitAndButted) {
         ASSERT_LT((plan.bands->count - 1) * plan.line.pixels, columns) << "the last band shows something";
         ASSERT_GE(plan.bands->count * plan.line.pixels, columns);
         ASSERT_EQ(plan.job.revolutions, 3 * plan.bands->count);
+        ASSERT_EQ(plan.bands->step_mm * 1000, plan.line.pixel_pitch_um * plan.line.pixels) << "band to band";
         ASSERT_EQ(revolutions_per_band(plan), 3);
       }
     }

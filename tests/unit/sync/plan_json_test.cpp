@@ -180,6 +180,7 @@ void expect_equal(const Plan& a, const Plan& b) {
     EXPECT_EQ(a.bands->count, b.bands->count);
     EXPECT_EQ(a.bands->columns, b.bands->columns);
     EXPECT_EQ(a.bands->revolutions_per_band, b.bands->revolutions_per_band);
+    EXPECT_EQ(a.bands->step_mm, b.bands->step_mm);
   }
   EXPECT_EQ(a.job.revolutions, b.job.revolutions);
   EXPECT_EQ(a.job.ticks, b.job.ticks);

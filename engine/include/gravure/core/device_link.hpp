@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "gravure/core/error.hpp"
 
@@ -13,6 +14,12 @@ namespace gravure {
 inline constexpr std::int64_t kMostSeedsPerSlot = 65'535;
 inline constexpr std::int64_t kMostClockMultiplier = 16;
 
+/// A segment of a channel's schedule: its counter's increment for so many seed clocks.
+struct ScheduleSegment {
+  std::uint64_t increment = 0;
+  std::uint64_t seeds = 0;
+};
+
 /// The second A-B channel, which drives the carriage of helical jobs; its counter is as wide as the first. It stands
 /// still with an increment of 0. Boards have a fraction for the first channel alone: here only 0/1 is taken.
 struct CarriageSetup {
@@ -20,6 +27,7 @@ struct CarriageSetup {
   std::uint64_t increment = 0;
   std::uint64_t fraction_num = 0;
   std::uint64_t fraction_den = 1;
+  std::vector<ScheduleSegment> spin_up = {};  ///< as that of the first channel
 };
 
 /// What is loaded into the board's registers before a program runs; all integers, all in FPGA ticks or slots.
@@ -30,6 +38,9 @@ struct DeviceSetup {
   std::uint64_t fraction_num = 0;
   std::uint64_t fraction_den = 1;
   CarriageSetup carriage = {};
+  /// Run from rest before tick 0, which is at its end: as `schedule_increment` and `schedule_seeds` take it, with `go`
+  /// at its begin and its seed clocks in `first_tick`. Empty: the counter begins at 0 with tick 0.
+  std::vector<ScheduleSegment> spin_up = {};
   std::int64_t clock_multiplier = 1;  ///< j: FPGA ticks per seed pulse
   std::int64_t ticks_per_slot = 1;    ///< a whole multiple of j
   std::int64_t slots_per_line = 1;    ///< np
@@ -55,7 +66,7 @@ std::uint32_t frame_crc32c(const LineFrame& frame) noexcept;
 /// Where the axis stands, by the A-B generator's own count since tick 0 of the job.
 struct AxisState {
   std::uint64_t edges = 0;        ///< A-B edges put out
-  std::uint64_t counts_high = 0;  ///< the counter unwrapped, 128 bits: edges = counts / 2^(n-2)
+  std::uint64_t counts_high = 0;  ///< the counter unwrapped, 128 bits: 2^(n-2) are an edge
   std::uint64_t counts_low = 0;
 };
 
@@ -84,6 +95,8 @@ struct DeviceStatus {
   std::int64_t tick = 0;                  ///< ticks since tick 0 of the job
   AxisState axis;                         ///< at that tick
   AxisState carriage = {};                ///< likewise
+  AxisState axis_spun_up = {};            ///< before tick 0, by the schedule from rest
+  AxisState carriage_spun_up = {};        ///< likewise
   DeviceFault fault = DeviceFault::none;  ///< sticky; the gate is closed while it stands
   std::string detail;                     ///< what was refused and why
 };

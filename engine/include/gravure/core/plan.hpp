@@ -79,6 +79,38 @@ struct AbPlan {
   Integer bound_lines_until_limit = 0;  ///< the published worst case 1/(2 increment), [B] eq. 10
 };
 
+/// A stretch of a ramp as the board's schedule registers take it (schedule_increment, schedule_seeds).
+struct SpinSegment {
+  std::uint64_t increment = 0;  ///< of the counter; prescaler and fraction are those of marking
+  std::int64_t seeds = 0;       ///< seed clocks it lasts: whole steps of the prescaler, but for one at rest
+
+  friend bool operator==(const SpinSegment&, const SpinSegment&) = default;
+};
+
+/// An axis between rest and its marking speed: a staircase of increments along a jerk-limited ramp. Lengths are degrees
+/// of the workpiece (rotary axis) or mm (stage, carriage).
+struct SpinPlan {
+  std::vector<SpinSegment> segments;
+  std::int64_t ticks = 0;         ///< of all segments; a spin-up ends, a spin-down begins with the marking
+  Integer counts = 0;             ///< the counter puts out in them, exactly; 2^(n-2) are an A-B edge
+  Rational travel = 0;            ///< of the axis, exactly
+  Rational duration_s = 0;        ///< exactly
+  Rational max_acceleration = 0;  ///< of the ramp
+  Rational max_jerk = 0;          ///< of the ramp
+  Rational speed_error = 0;       ///< largest difference of staircase and ramp, a second
+};
+
+/// Both ends of a job, where all three limits of an axis are given.
+struct AxisSpin {
+  SpinPlan up;
+  SpinPlan down;
+  /// Rotary axis: line 0 lies at this angle from the encoder index, where the axis stood before, whole turns included,
+  /// and travel - start_deg is what an A-B edge is too coarse for.
+  Rational start_deg = 0;
+  Rational start_error_deg = 0;
+  Rational total_s = 0;  ///< of the job: spin-up, marking and spin-down; in flat mode every pass has its own
+};
+
 /// Helical mode: what the carriage does while the workpiece turns. With h columns a revolution, nL lines and L layers,
 /// segment s (0 trails, L - 1 leads) of line l of revolution R covers the columns from floor(h (R - L + s + l / nL)) up
 /// to the start of the next segment, and exposes layer L - 1 - s: over all revolutions each segment covers each column
@@ -97,6 +129,7 @@ struct CarriagePlan {
   int interpolation_bits = 0;
   Rational edges_per_revolution = 0;  ///< A-B edges per workpiece revolution: 4 * 2^q * feed / encoder pitch
   AbPlan ab;                          ///< the second channel; its lines and um are those of the carriage's travel
+  std::optional<AxisSpin> spin;       ///< none: it moves already at tick 0 and goes on at the end
 };
 
 /// An image wider than the scan field, exposed in strips: band b starts at column b * line.pixels, and has all its
@@ -105,6 +138,7 @@ struct BandsPlan {
   std::int64_t count = 0;
   std::int64_t columns = 0;  ///< of the images; the last band may hold fewer than the others, the rest stays dark
   std::int64_t revolutions_per_band = 0;
+  Rational step_mm = 0;  ///< what the stage along the axis moves from a band to the next: the pixels of a line
 };
 
 /// The scanner as the job or its machine file describes it: what is needed, with the rest of the plan, to say where
@@ -139,6 +173,7 @@ struct Plan {
   LinePlan line;
   RotaryPlan rotary;
   AbPlan ab;
+  std::optional<AxisSpin> spin;          ///< of the cross-scan axis; none: it turns already at tick 0 and goes on
   std::optional<CarriagePlan> carriage;  ///< helical mode
   std::optional<BandsPlan> bands;        ///< none: the image fits the field
   std::optional<ScannerPlan> scanner;    ///< none: the job does not say how large the field is

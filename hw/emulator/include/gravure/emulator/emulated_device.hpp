@@ -7,6 +7,7 @@
 
 #include "gravure/core/device_link.hpp"
 #include "gravure/core/error.hpp"
+#include "gravure/emulator/schedule.hpp"
 #include "gravure/fpga/ab_registers.hpp"
 #include "gravure/fpga/pulse_gate.hpp"
 #include "gravure/fpga/register_map.hpp"
@@ -70,6 +71,8 @@ class EmulatedDevice final : public DeviceLink {
   DeviceSetup setup_;
   fpga::AbRegisters ab_;
   fpga::AbRegisters carriage_;
+  ScheduleEnd ab_start_;
+  ScheduleEnd carriage_start_;
   std::int64_t ticks_per_line_ = 0;
   std::vector<std::byte> fired_;
 

@@ -1,0 +1,95 @@
+#include "gravure/emulator/schedule.hpp"
+
+#include "gravure/fpga/register_map.hpp"
+
+namespace gravure::emulator {
+namespace {
+
+constexpr std::uint64_t kMostSegments = 256;  // what the list of an increment_schedule holds
+
+Error refusal(const std::string& what) {
+  return {ErrorCode::device, "the board refuses " + what};
+}
+
+std::uint64_t ticks_of(const ScheduleSegment& segment, std::int64_t ticks_per_seed) {
+  return segment.seeds * static_cast<std::uint64_t>(ticks_per_seed);
+}
+
+AxisState state_of(fpga::Uint128 counts, std::uint64_t edges) {
+  return {.edges = edges,
+          .counts_high = static_cast<std::uint64_t>(counts >> 64U),
+          .counts_low = static_cast<std::uint64_t>(counts)};
+}
+
+unsigned edge_shift(const fpga::AbRegisters& registers) {
+  return static_cast<unsigned>(registers.bits - 2);
+}
+
+}  // namespace
+
+Result<void> check_schedule(const std::string& field, const std::vector<ScheduleSegment>& segments,
+                            const fpga::AbRegisters& registers, std::int64_t ticks_per_seed) {
+  if (segments.empty()) {
+    return {};
+  }
+  if (segments.size() > kMostSegments) {
+    return refusal(field + " of " + std::to_string(segments.size()) + " segments: its list holds " +
+                   std::to_string(kMostSegments));
+  }
+  std::uint64_t seeds = 0;
+  for (const ScheduleSegment& segment : segments) {
+    if (segment.increment > fpga::max_increment(registers)) {
+      return refusal(field + " increment = " + std::to_string(segment.increment) + ": allowed is 0 to " +
+                     std::to_string(fpga::max_increment(registers)));
+    }
+    if (segment.seeds < 1 || segment.seeds > fpga::largest(fpga::kScheduleSeedsRegister)) {
+      return refusal(field + " seeds = " + std::to_string(segment.seeds) + ": allowed is 1 to " +
+                     std::to_string(fpga::largest(fpga::kScheduleSeedsRegister)));
+    }
+    const bool stands = segment.increment == 0 && registers.fraction_num == 0;
+    if (!stands && ticks_of(segment, ticks_per_seed) % registers.prescaler != 0) {
+      return refusal(field + " seeds = " + std::to_string(segment.seeds) + ": must be whole steps of the prescaler, " +
+                     std::to_string(registers.prescaler) + " ticks");
+    }
+    seeds += segment.seeds;
+  }
+  if (seeds > fpga::largest(fpga::kFirstTickRegister)) {
+    return refusal(field + " of " + std::to_string(seeds) + " seed clocks: first_tick counts to " +
+                   std::to_string(fpga::largest(fpga::kFirstTickRegister)));
+  }
+  return {};
+}
+
+ScheduleEnd run_schedule(const std::vector<ScheduleSegment>& segments, const fpga::AbRegisters& registers,
+                         std::int64_t ticks_per_seed) noexcept {
+  ScheduleEnd end;
+  std::uint64_t ticks = 0;
+  for (const ScheduleSegment& segment : segments) {
+    fpga::AbRegisters now = registers;
+    now.increment = segment.increment;
+    now.fraction_num = 0;
+    now.fraction_den = 1;
+    end.counts += fpga::position_after(now, ticks_of(segment, ticks_per_seed)).counts;
+    ticks += ticks_of(segment, ticks_per_seed);
+  }
+  fpga::AbRegisters fraction = registers;  // it runs on through all segments
+  fraction.increment = 0;
+  const fpga::AbPosition gathered = fpga::position_after(fraction, ticks);
+  end.counts += gathered.counts;
+  end.accumulator = gathered.accumulator;
+  return end;
+}
+
+AxisState spun_up(const ScheduleEnd& end, const fpga::AbRegisters& registers) noexcept {
+  return state_of(end.counts, static_cast<std::uint64_t>(end.counts >> edge_shift(registers)));
+}
+
+AxisState axis_after(const ScheduleEnd& end, const fpga::AbRegisters& registers, std::int64_t tick) noexcept {
+  const fpga::AbPosition position = fpga::position_after(registers, static_cast<std::uint64_t>(tick));
+  const bool carry = fpga::Uint128{position.accumulator} + end.accumulator >= registers.fraction_den;
+  const fpga::Uint128 counts = position.counts + (carry ? 1U : 0U);
+  const fpga::Uint128 begun = end.counts & ((fpga::Uint128{1} << edge_shift(registers)) - 1U);
+  return state_of(counts, static_cast<std::uint64_t>((begun + counts) >> edge_shift(registers)));
+}
+
+}  // namespace gravure::emulator
