@@ -33,10 +33,13 @@ class Filling {
                "; take one of the two out, so that one place says it");
     }
   }
-  void complain(const std::string& text) { text_ += (text_.empty() ? "" : "\n") + text; }
+  /// Of the file as a whole.
+  void refuse_file(const std::string& why) { complain(job_.place_of("machine.file") + "machine.file: " + why); }
   Result<void> result() const { return text_.empty() ? Result<void>() : Error{ErrorCode::bad_argument, text_}; }
 
  private:
+  void complain(const std::string& text) { text_ += (text_.empty() ? "" : "\n") + text; }
+
   const MachineFile& file_;
   const Job& job_;
   std::string text_;
@@ -81,8 +84,8 @@ const Joint* axis_of(const MachineFile& file, JointKind kind, const kinematics::
       continue;
     }
     if (found != nullptr) {
-      filling.complain("machine.file: joints " + found->name + " and " + joint.name + " could both be the axis of [" +
-                       section + "]; leave one of them in a file of its own");
+      filling.refuse_file("joints " + found->name + " and " + joint.name + " could both be the axis of [" + section +
+                          "]; describe in this file only the one that is");
       return nullptr;
     }
     found = &joint;
@@ -111,9 +114,9 @@ Result<void> apply_machine(const MachineFile& file, Job& job) {
   Filling filling(file, job);
   const kinematics::ScanHead& head = file.machine.head;
   if (head.u_axis.cross(head.v_axis).dot(head.beam_axis) < 0) {
-    filling.complain(job.place_of("machine.file") +
-                     "machine.file: u_axis, v_axis and beam_axis of its head are left-handed: in the raster modes V "
-                     "counts from line to line; turn v_axis round");
+    filling.refuse_file(
+        "u_axis, v_axis and beam_axis of its head are left-handed: in the raster modes V counts from "
+        "line to line; turn v_axis round");
   }
   fill_head(file, filling, job.scanner);
   const auto axis = [&](JointKind kind, const kinematics::Vector3& along, const char* section, AxisLimits& limits) {
