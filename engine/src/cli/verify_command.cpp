@@ -44,11 +44,32 @@ std::optional<std::int64_t> wrong_layer(const ProgramHeader& header, LayerOrder 
   return std::nullopt;
 }
 
+/// What a job names other files for stands in the program as it was compiled: the head of a machine file, a field grid.
+Job with_files_of(const Plan& plan, Job job) {
+  if (!plan.scanner) {
+    return job;
+  }
+  const ScannerPlan& compiled = *plan.scanner;
+  if (job.machine.file) {
+    job.scanner.field_mm = compiled.field_mm;
+    job.scanner.resolution_bits = compiled.resolution_bits;
+    job.scanner.lag_us = compiled.lag_us;
+    job.scanner.max_speed_mm_s = compiled.max_speed_mm_s;
+    job.scanner.max_acceleration_mm_s2 = compiled.max_acceleration_mm_s2;
+    job.scanner.max_jerk_mm_s3 = compiled.max_jerk_mm_s3;
+    job.scanner.tilt_deg_per_mm = compiled.tilt_deg_per_mm;
+  }
+  if (job.scanner.field_grid) {
+    job.scanner.field_grid_text = compiled.field_grid;
+  }
+  return job;
+}
+
 /// The job text in a program must lead to the very plan, and the order of layers, that stand in it.
 Result<std::optional<std::string>> plan_contradiction(const ProgramHeader& header, const Job& job) {
   const std::int64_t exposures =
       header.plan.carriage ? header.plan.carriage->layers : revolutions_per_band(header.plan);
-  GRAVURE_TRY(Plan again, make_plan(job, image_columns(header.plan), exposures));
+  GRAVURE_TRY(Plan again, make_plan(with_files_of(header.plan, job), image_columns(header.plan), exposures));
   again.warnings = header.plan.warnings;  // those about images are not made here
   if (plan_to_json(again) == plan_to_json(header.plan)) {
     const std::optional<std::int64_t> wrong = wrong_layer(header, job.image.order);

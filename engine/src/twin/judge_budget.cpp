@@ -48,9 +48,10 @@ void judge_defocus(const ErrorBudget& budget, const Rational& limit_um, VerifyRe
         "limits.defocus_um cannot be judged: give scanner.field_mm and leave twin.defocus enabled, or take the limit "
         "out");
   } else if (*budget.defocus_max_um > to_double(limit_um)) {
-    report.violations.push_back("the surface is up to " + figure(*budget.defocus_max_um) +
-                                " um from focus, which exceeds limits.defocus_um = " + to_decimal_string(limit_um) +
-                                ": take more lines or a shorter marking window");
+    report.violations.push_back(
+        "the surface is up to " + figure(*budget.defocus_max_um) +
+        " um from focus, which exceeds limits.defocus_um = " + to_decimal_string(limit_um) +
+        ": more lines or a shorter window flatten the arc of a line; run-out and growth lift the surface");
   }
 }
 

@@ -47,7 +47,8 @@ RoundedOrders orders_of(const LineTrajectory& trajectory, Direction direction, c
       orders.order_um.push_back(point.u_mm * kUmPerMm);
     }
   }
-  const auto most = static_cast<double>(timing.slots / timing.slots_per_microvector - 2);
+  const std::int64_t last_but_one = timing.slots / timing.slots_per_microvector - 2;
+  const auto most = static_cast<double>(last_but_one);
   for (std::int64_t i = 0; i < timing.pixels; ++i) {
     const double slot = pulse_slot(timing, direction, i) - model.lag_us * 1e-6 / timing.slot_s();
     if (!terms.microvectors) {
