@@ -49,7 +49,8 @@ class FolderOutput {
                     failed);
     return FolderOutput(whole, temporary);
   }
-  FolderOutput(FolderOutput&& other) noexcept : path_(other.path_), temporary_(std::exchange(other.temporary_, {})) {}
+  FolderOutput(FolderOutput&& other) noexcept
+      : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, {})) {}
   FolderOutput(const FolderOutput&) = delete;
   FolderOutput& operator=(const FolderOutput&) = delete;
   FolderOutput& operator=(FolderOutput&&) = delete;
