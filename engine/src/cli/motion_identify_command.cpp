@@ -22,21 +22,27 @@ struct IdentifyOptions {
 };
 
 std::string identification_text(const motion::Identification& found) {
-  std::string text = fmt::format("{:>12} {:>10} {:>12} {:>12} {:>14} {:>10}\n", "f Hz", "+-", "zeta", "+-",
-                                 found.participation_is_absolute ? "participation" : "amplitude", "+-");
+  std::string text =
+      fmt::format("{:>12} {:>10} {:>12} {:>12} {:>14} {:>10} {:>14}\n", "f Hz", "+-", "zeta", "+-",
+                  found.participation_is_absolute ? "participation" : "amplitude", "+-", "resolution Hz");
   for (const motion::IdentifiedMode& mode : found.modes) {
-    text += fmt::format("{:>12.5f} {:>10.2g} {:>12.6f} {:>12.2g} {:>14.5f} {:>10.2g}\n", mode.mode.f_hz, mode.f_sd_hz,
-                        mode.mode.zeta, mode.zeta_sd, mode.mode.participation, mode.participation_sd);
+    text += fmt::format("{:>12.5f} {:>10.2g} {:>12.6f} {:>12.2g} {:>14.5f} {:>10.2g} {:>14.3g}\n", mode.mode.f_hz,
+                        mode.f_sd_hz, mode.mode.zeta, mode.zeta_sd, mode.mode.participation, mode.participation_sd,
+                        mode.resolution_hz);
   }
-  return text + fmt::format("noise {:.4g} mm/s^2, offset {:.6g} mm/s^2, {} samples\n", found.noise_sd_mm_s2,
-                            found.offset_mm_s2, found.samples);
+  return text +
+         fmt::format(
+             "noise {:.4g} mm/s^2, offset {:.6g} mm/s^2, {} samples in {:.4g} s (1/T = {:.3g} Hz); what vibrates "
+             "above {:.6g} Hz appears below, folded\n",
+             found.noise_sd_mm_s2, found.offset_mm_s2, found.samples, found.record_s, 1 / found.record_s,
+             found.sample_hz / 2);
 }
 
 std::string identification_csv(const motion::Identification& found) {
-  std::string csv = "f_hz,f_sd_hz,zeta,zeta_sd,participation,participation_sd\n";
+  std::string csv = "f_hz,f_sd_hz,zeta,zeta_sd,participation,participation_sd,resolution_hz\n";
   for (const motion::IdentifiedMode& m : found.modes) {
-    csv += fmt::format("{},{},{},{},{},{}\n", m.mode.f_hz, m.f_sd_hz, m.mode.zeta, m.zeta_sd, m.mode.participation,
-                       m.participation_sd);
+    csv += fmt::format("{},{},{},{},{},{},{}\n", m.mode.f_hz, m.f_sd_hz, m.mode.zeta, m.zeta_sd, m.mode.participation,
+                       m.participation_sd, m.resolution_hz);
   }
   return csv;
 }
@@ -61,6 +67,9 @@ Result<int> run_identify(const IdentifyOptions& options, bool json) {
   const auto found = motion::identify(request);
   if (!found) {
     return Error{found.error().code, options.recording + ": " + found.error().message};
+  }
+  for (const std::string& warning : found.value().warnings) {
+    warn(warning);
   }
   GRAVURE_CHECK(write_outputs(options.output, identification_csv(found.value()), "Recording", "s", {curve}));
   print(json ? formats::identification_to_json(found.value()) : identification_text(found.value()));

@@ -184,7 +184,42 @@ VectorXd parameters_of(const Series& series, const std::vector<std::complex<doub
   return p;
 }
 
+/// Empty where the parameters cannot be told from each other.
+MatrixXd covariance_of(const Normal& normal, double variance) {
+  const VectorXd scale = normal.matrix.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const MatrixXd even = scale.cwiseInverse().asDiagonal() * normal.matrix * scale.cwiseInverse().asDiagonal();
+  const Eigen::LDLT<MatrixXd> inverse(even);
+  if (inverse.info() != Eigen::Success || !(inverse.vectorD().minCoeff() > 1e-13)) {
+    return {};
+  }
+  const MatrixXd identity = MatrixXd::Identity(even.rows(), even.cols());
+  return variance * (scale.cwiseInverse().asDiagonal() * inverse.solve(identity) * scale.cwiseInverse().asDiagonal());
+}
+
 }  // namespace
+
+MatrixXd covariance_at(const Series& series, const VectorXd& p, double variance) {
+  return covariance_of(normal_equations(series, p, false), variance);
+}
+
+double residual_correlation(const Series& series, const DampedFit& fit) {
+  Oscillations oscillations(fit.parameters, series.period_s);
+  double before = 0;
+  double products = 0;
+  double squares = 0;
+  for (std::size_t k = 0; k < series.values.size(); ++k) {
+    const auto& modes = oscillations.at(k);
+    double left = series.values[k] - fit.parameters[0];
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const auto m = static_cast<Index>(1 + 4 * i);
+      left -= fit.parameters[m + 2] * modes[i].real() + fit.parameters[m + 3] * modes[i].imag();
+    }
+    products += left * before;
+    squares += left * left;
+    before = left;
+  }
+  return squares > 0 ? products / squares : 0;
+}
 
 double misfit(const Series& series, const std::vector<std::complex<double>>& poles) {
   const double squares = normal_equations(series, parameters_of(series, poles), true).sum_of_squares;
@@ -217,16 +252,9 @@ DampedFit fit_damped(const Series& series, const std::vector<std::complex<double
   }
   fit.parameters = p;
   fit.sum_of_squares = now.sum_of_squares;
-  const VectorXd scale = now.matrix.diagonal().cwiseMax(1e-300).cwiseSqrt();
-  const MatrixXd even = scale.cwiseInverse().asDiagonal() * now.matrix * scale.cwiseInverse().asDiagonal();
-  const Eigen::LDLT<MatrixXd> inverse(even);
-  fit.solved = p.allFinite() && inverse.info() == Eigen::Success && inverse.vectorD().minCoeff() > 1e-13;
-  if (fit.solved) {
-    const double degrees = std::max(1.0, static_cast<double>(series.values.size()) - static_cast<double>(p.size()));
-    fit.covariance = scale.cwiseInverse().asDiagonal() * inverse.solve(MatrixXd::Identity(p.size(), p.size())) *
-                     scale.cwiseInverse().asDiagonal();
-    fit.covariance *= fit.sum_of_squares / degrees;
-  }
+  const double degrees = std::max(1.0, static_cast<double>(series.values.size()) - static_cast<double>(p.size()));
+  fit.covariance = covariance_of(now, fit.sum_of_squares / degrees);
+  fit.solved = p.allFinite() && fit.covariance.size() > 0;
   return fit;
 }
 

@@ -37,6 +37,12 @@ class SignalSpace {
 /// Sum of squares that is left with these poles and the best amplitudes.
 double misfit(const Series& series, const std::vector<std::complex<double>>& poles);
 
+/// Covariance of the parameters at p for white noise of this variance; empty where they cannot be told from each other.
+Eigen::MatrixXd covariance_at(const Series& series, const Eigen::VectorXd& p, double variance);
+
+/// Correlation of what the fit leaves from one sample to the next: 0 for white noise, -1 for what alternates.
+double residual_correlation(const Series& series, const DampedFit& fit);
+
 /// Levenberg-Marquardt from the given poles.
 DampedFit fit_damped(const Series& series, const std::vector<std::complex<double>>& poles);
 

@@ -11,6 +11,7 @@
 #include "check_request.hpp"
 #include "damped_fit.hpp"
 #include "gravure/motion/settling.hpp"
+#include "identify_limits.hpp"
 #include "mode_constants.hpp"
 
 namespace gravure::motion {
@@ -70,7 +71,8 @@ bool plausible(const DampedFit& fit, double period_s) {
     const double w = fit.parameters[m + 1];
     const double amplitude = std::hypot(fit.parameters[m + 2], fit.parameters[m + 3]);
     const double sd = std::sqrt(fit.covariance(m + 2, m + 2) + fit.covariance(m + 3, m + 3));
-    if (!(w > 0 && w * period_s < kTwoPi / 2 && fit.parameters[m] * period_s < 0.3 && amplitude > 4 * sd)) {
+    if (!(w > 0 && w * period_s < kTwoPi / 2 && fit.parameters[m] * period_s < 0.3 &&
+          amplitude > kStandsOutInDeviations * sd)) {
       return false;
     }
   }
@@ -239,7 +241,7 @@ Result<void> check_apart(const std::vector<IdentifiedMode>& modes) {
   for (std::size_t i = 0; i + 1 < modes.size(); ++i) {
     const double gap = modes[i + 1].mode.f_hz - modes[i].mode.f_hz;
     const double sd = std::hypot(modes[i].f_sd_hz, modes[i + 1].f_sd_hz);
-    if (gap < 3 * sd) {
+    if (gap < kApartInDeviations * sd) {
       return cannot_tell(
           fmt::format("two modes at {:.4g} and {:.4g} Hz are closer than three times their uncertainty of {:.3g} "
                       "Hz; record longer or ask for fewer modes",
@@ -265,6 +267,8 @@ Result<void> check_identify_request(const IdentifyRequest& request) {
 Result<Identification> read_fit(const IdentifyRequest& request, const Series& series, const DampedFit& fit) {
   Identification result;
   result.samples = series.values.size();
+  result.sample_hz = 1 / series.period_s;
+  result.record_s = series.period_s * static_cast<double>(series.values.size());
   result.offset_mm_s2 = fit.parameters[0];
   result.noise_sd_mm_s2 = std::sqrt(fit.sum_of_squares / std::max(1.0, static_cast<double>(series.values.size()) -
                                                                            static_cast<double>(fit.parameters.size())));
@@ -278,10 +282,12 @@ Result<Identification> read_fit(const IdentifyRequest& request, const Series& se
     GRAVURE_CHECK(check_mode(request, series, measured));
     result.modes.push_back(measured.mode);
     result.modes.back().mode.zeta = std::max(0.0, measured.mode.mode.zeta);
+    result.modes.back().resolution_hz = resolution_hz(series, fit, i);
   }
   std::sort(result.modes.begin(), result.modes.end(),
             [](const IdentifiedMode& a, const IdentifiedMode& b) { return a.mode.f_hz < b.mode.f_hz; });
   GRAVURE_CHECK(check_apart(result.modes));
+  result.warnings = warnings_of(series, fit, result);
   return result;
 }
 
@@ -301,7 +307,9 @@ Result<Identification> identify(const IdentifyRequest& request) {
   if (!fit || fit->modes() == 0 || !fit->solved) {
     return cannot_tell(request.modes == 0
                            ? std::string("no vibration stands out of the noise")
-                           : fmt::format("no {} separate vibrations stand out of the noise", request.modes));
+                           : fmt::format("no {} separate vibrations stand out of the noise in {:.4g} s of record; "
+                                         "record longer, with less noise, or ask for fewer modes",
+                                         request.modes, series.period_s * static_cast<double>(series.values.size())));
   }
   return read_fit(request, series, *fit);
 }

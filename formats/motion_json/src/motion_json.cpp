@@ -123,13 +123,17 @@ std::string identification_to_json(const motion::Identification& identification)
                      {"zeta", mode.mode.zeta},
                      {"zeta_sd", mode.zeta_sd},
                      {"participation", mode.mode.participation},
-                     {"participation_sd", mode.participation_sd}});
+                     {"participation_sd", mode.participation_sd},
+                     {"resolution_hz", number(mode.resolution_hz)}});
   }
   return text_of({{"modes", modes},
                   {"participation_is_absolute", identification.participation_is_absolute},
                   {"offset_mm_s2", identification.offset_mm_s2},
                   {"noise_sd_mm_s2", identification.noise_sd_mm_s2},
-                  {"samples", identification.samples}});
+                  {"samples", identification.samples},
+                  {"record_s", identification.record_s},
+                  {"sample_hz", identification.sample_hz},
+                  {"warnings", identification.warnings}});
 }
 
 std::string unreversed_to_json(const std::vector<UnreversedAxis>& axes, const ToolPathSummary& tool) {

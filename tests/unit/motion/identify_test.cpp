@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "gravure/motion/plan_profile.hpp"
 #include "indexing_models.hpp"
 #include "motion_test_support.hpp"
 
 namespace gravure::motion {
 namespace {
+
+constexpr double kTwoPi = 6.283185307179586;
 
 /// What a sensor on the carried part would record, with noise of `noise` mm/s^2.
 IdentifyRequest recorded(const std::vector<Mode>& modes, const std::vector<InputJump>& input, RecordingOf of,
@@ -131,6 +135,149 @@ TEST(Identify, RefusesDataThatCannotTell) {
   auto late = recorded(one, step, RecordingOf::step, 0, 1, 1e-3, 1, random);
   late.start_s = 0.006;  // a quarter period after the step it claims to see
   refused(late, "phase");
+}
+
+bool warns_of(const Identification& found, std::string_view text) {
+  return std::any_of(found.warnings.begin(), found.warnings.end(),
+                     [text](const std::string& w) { return w.find(text) != std::string::npos; });
+}
+
+/// Sums of decaying oscillations of any phase, in noise.
+struct Ringing {
+  double f_hz;
+  double zeta;
+  double amplitude;
+  double phase_rad;
+};
+
+IdentifyRequest rung(const std::vector<Ringing>& modes, double length_s, double sample_hz, double noise,
+                     test::Random& random) {
+  IdentifyRequest request;
+  for (int k = 0; k < length_s * sample_hz; ++k) {
+    const double t = k / sample_hz;
+    double value = noise * random.gaussian();
+    for (const Ringing& m : modes) {
+      const double w = kTwoPi * m.f_hz;
+      value += m.amplitude * std::exp(-m.zeta * w * t) * std::cos(w * std::sqrt(1 - m.zeta * m.zeta) * t + m.phase_rad);
+    }
+    request.recording.time_s.push_back(t);
+    request.recording.acceleration_mm_s2.push_back(value);
+  }
+  return request;
+}
+
+TEST(Identify, SaysHowCloseTwoModesMayBeAndNeverMergesAWiderPairInSilence) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed() + 5);
+  int told = 0;
+  int merged = 0;
+  for (int trial = 0; trial < 150; ++trial) {
+    const double zeta = random.between(0.002, 0.02);
+    const double gap_hz = 0.1 * std::exp(random.between(0, 4));
+    const double phase = random.between(0, kTwoPi);
+    const auto found = identify(rung({{60 - gap_hz / 2, zeta, 500, phase}, {60 + gap_hz / 2, zeta, 500, phase}}, 1,
+                                     1000, std::exp(random.between(-1, 4)), random));
+    if (!found) {
+      EXPECT_NE(found.error().message.find("cannot tell"), std::string::npos) << found.error().message;
+      continue;
+    }
+    const auto& modes = found.value().modes;
+    ASSERT_LE(modes.size(), 2U) << "trial " << trial;
+    if (modes.size() == 2) {
+      ++told;
+      EXPECT_NEAR(modes[0].mode.f_hz, 60 - gap_hz / 2, 5 * modes[0].f_sd_hz + 1e-6) << "trial " << trial;
+      EXPECT_NEAR(modes[1].mode.f_hz, 60 + gap_hz / 2, 5 * modes[1].f_sd_hz + 1e-6) << "trial " << trial;
+    } else {
+      ++merged;
+      EXPECT_LT(gap_hz, 1.3 * modes[0].resolution_hz) << "trial " << trial << ", zeta " << zeta;
+      // A pair that would beat within its own decay does not pass without a word.
+      EXPECT_TRUE(gap_hz < 2 * zeta * 60 / 2 || warns_of(found.value(), "record longer")) << "trial " << trial;
+    }
+  }
+  EXPECT_GT(told, 30);
+  EXPECT_GT(merged, 30);
+}
+
+TEST(Identify, TellsAPairApartThatIsWiderThanTheResolutionOfTheRecord) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed() + 6);
+  int told = 0;
+  constexpr int kTrials = 60;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const double zeta = random.between(0.002, 0.01);
+    const double noise = std::exp(random.between(0, 3));
+    const double phase = random.between(0, kTwoPi);
+    const auto one = identify(rung({{60, zeta, 1000, phase}}, 1, 1000, noise, random));
+    ASSERT_TRUE(one) << one.error().message;
+    ASSERT_EQ(one.value().modes.size(), 1U);
+    const double gap_hz = 1.6 * one.value().modes[0].resolution_hz;
+    ASSERT_GT(gap_hz, 0);
+    ASSERT_LT(gap_hz, 30) << "zeta " << zeta << ", noise " << noise;
+    const auto two = identify(
+        rung({{60 - gap_hz / 2, zeta, 500, phase}, {60 + gap_hz / 2, zeta, 500, phase}}, 1, 1000, noise, random));
+    told += two && two.value().modes.size() == 2 ? 1 : 0;
+  }
+  EXPECT_GE(told, kTrials * 9 / 10);
+}
+
+TEST(Identify, WarnsOfTheRecordTooShortForAPairUntilItIsLonger) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed() + 7);
+  const std::vector<Ringing> pair{{60.0, 0.003, 500, 0.3}, {60.2, 0.003, 500, 0.3}};
+  const auto merged = identify(rung(pair, 1, 1000, 10, random));
+  ASSERT_TRUE(merged) << merged.error().message;
+  ASSERT_EQ(merged.value().modes.size(), 1U);
+  EXPECT_TRUE(warns_of(merged.value(), "60.1 Hz may be two"));
+  EXPECT_GT(merged.value().modes[0].resolution_hz, 0.2);
+  EXPECT_NEAR(merged.value().record_s, 1, 1e-9);
+  EXPECT_NEAR(merged.value().sample_hz, 1000, 1e-6);
+  auto two = rung(pair, 1, 1000, 10, random);
+  two.modes = 2;
+  const auto refused = identify(two);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("record longer"), std::string::npos) << refused.error().message;
+  const auto longer = identify(rung(pair, 6, 1000, 1, random));
+  ASSERT_TRUE(longer) << longer.error().message;
+  ASSERT_EQ(longer.value().modes.size(), 2U);
+  EXPECT_NEAR(longer.value().modes[0].mode.f_hz, 60.0, 5 * longer.value().modes[0].f_sd_hz);
+  const auto one = identify(rung({{60, 0.003, 1000, 0.3}}, 6, 1000, 1, random));
+  ASSERT_TRUE(one) << one.error().message;
+  ASSERT_EQ(one.value().modes.size(), 1U);
+  EXPECT_LT(one.value().modes[0].resolution_hz, 0.09);
+  EXPECT_TRUE(one.value().warnings.empty()) << one.value().warnings[0];
+}
+
+TEST(Identify, WarnsOfModesThatMayBeFolded) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed() + 8);
+  for (int trial = 0; trial < 20; ++trial) {
+    const double phase = random.between(0, kTwoPi);
+    const double f_hz = random.between(560, 790);
+    const auto folded = identify(rung({{f_hz, 0.005, 1000, phase}}, 1, 1000, 10, random));
+    ASSERT_TRUE(folded) << folded.error().message;
+    EXPECT_NEAR(folded.value().modes[0].mode.f_hz, 1000 - f_hz, 1);  // the data cannot tell
+    EXPECT_TRUE(warns_of(folded.value(), "sample faster"));
+    const auto faster = identify(rung({{f_hz, 0.005, 1000, phase}}, 1, 5000, 10, random));
+    ASSERT_TRUE(faster) << faster.error().message;
+    EXPECT_NEAR(faster.value().modes[0].mode.f_hz, f_hz, 5 * faster.value().modes[0].f_sd_hz);
+    EXPECT_FALSE(warns_of(faster.value(), "sample faster"));
+  }
+}
+
+TEST(Identify, WarnsOfAVibrationAtHalfTheSampleRateBesideTheMode) {
+  GRAVURE_TRACE_SEED();
+  test::Random random(test::seed() + 9);
+  for (int trial = 0; trial < 20; ++trial) {
+    const double phase = random.between(0, kTwoPi);
+    const double f_hz = random.between(496, 504);
+    const auto found = identify(rung({{60, 0.01, 1000, phase}, {f_hz, 0.001, 200, 0.5}}, 1, 1000, 5, random));
+    EXPECT_TRUE(found ? warns_of(found.value(), "sample faster")
+                      : found.error().message.find("sample faster") != std::string::npos)
+        << "trial " << trial << ", " << f_hz << " Hz";
+  }
+  const auto alone = identify(rung({{60, 0.01, 1000, 1}}, 1, 1000, 5, random));
+  ASSERT_TRUE(alone) << alone.error().message;
+  EXPECT_FALSE(warns_of(alone.value(), "sample faster"));
 }
 
 TEST(RecordingCsv, ReadsHeadingsCommentsAndSeparators) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "indexing_models.hpp"
@@ -73,7 +74,12 @@ TEST(MotionJson, OfASearchHasItsKeysInOrder) {
 TEST(MotionJson, OfModesAndPathsHasItsKeys) {
   motion::Identification found;
   found.modes.push_back({{40, 0.1, 0.5}, 0.01, 0.001, 0.02});
-  EXPECT_EQ(json::parse(identification_to_json(found))["modes"][0]["f_hz"], 40);
+  found.modes[0].resolution_hz = std::numeric_limits<double>::infinity();
+  found.warnings = {"40 Hz may be two"};
+  const json identified = json::parse(identification_to_json(found));
+  EXPECT_EQ(identified["modes"][0]["f_hz"], 40);
+  EXPECT_TRUE(identified["modes"][0]["resolution_hz"].is_null());
+  EXPECT_EQ(identified["warnings"][0], "40 Hz may be two");
   const std::vector<double> s{0, 1, 2, 3};
   const std::vector<double> a{0, 2, 1.9, 3};
   const auto result = motion::remove_reversals({s, a, 0.5, 8}).value();

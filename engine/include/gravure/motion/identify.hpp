@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct IdentifiedMode {
   double f_sd_hz = 0;
   double zeta_sd = 0;
   double participation_sd = 0;
+  /// Two modes of half this amplitude each, at equal damping, show as two in such a record, with such noise, from this
+  /// distance on; closer ones look like this one, with these uncertainties. Infinite where none would show.
+  double resolution_hz = 0;
 };
 
 struct Identification {
@@ -50,6 +54,10 @@ struct Identification {
   double offset_mm_s2 = 0;  ///< the step's size, or the sensor's offset
   double noise_sd_mm_s2 = 0;
   std::uint64_t samples = 0;
+  double record_s = 0;   ///< length of what was fitted: 1 / record_s is the classical resolution
+  double sample_hz = 0;  ///< what vibrates above half of it appears below, folded
+  /// What this record cannot tell: modes that may be two, modes that may be folded; with the value and what to do.
+  std::vector<std::string> warnings;
 };
 
 /// Poles by ESPRIT on strided Hankel matrices, then least squares on sum exp(-s t) (A cos w t + B sin w t) + offset;
@@ -57,7 +65,10 @@ struct Identification {
 /// assumes white noise. Refuses with bad_file data that cannot tell: too few, uneven or not finite samples; nothing but
 /// noise; a vibration that grows; modes above 0.45 of the sample rate, less certain than the request allows, or closer
 /// to each other than their uncertainty; a record shorter than two periods; amplitudes that do not fit the stated
-/// input.
+/// input. Warns where a mode's resolution is coarser than a quarter of its bandwidth 2 zeta f (a closer pair beats by
+/// a quarter of a radian at most before it has decayed to 1/e, so that it may as well be one), where a mode is above a
+/// fifth of the sample rate (one at the sample rate less f, folded, is then within four times f), and where what is
+/// left alternates from sample to sample as a vibration close to half the sample rate does.
 Result<Identification> identify(const IdentifyRequest& request);
 
 }  // namespace gravure::motion
