@@ -123,6 +123,9 @@ Result<motion::SmoothPath> smooth(const UnreverseOptions& options, const ToolPat
                                     surroundings_of(options.around, points)};
   request.stops = path.stops;
   request.line_of_sample = path.read.line;
+  if (options.machine_frame) {
+    request.straight_axes_about_mm = path.rotary_centre_mm;
+  }
   auto smoothed = motion::smooth_tool_path(request);
   if (!smoothed) {
     return Error{smoothed.error().code, options.program + ": " + smoothed.error().message};

@@ -60,15 +60,28 @@ TEST(SmoothToolPath, RemovesReversalsAndHoldsTheFocus) {
 }
 
 TEST(SmoothToolPath, TurnsCOutOfTheWayWhereTheBeamTouchesAndNowhereElse) {
-  const Channel channel(25, 25);  // leans sideways; the walls begin half-way
+  const Channel channel(25, 15);  // leans sideways; the walls begin half-way
   const SmoothPathRequest request = channel.request();
-  const SmoothPath smooth = smooth_tool_path(request).value();
+  const auto result = smooth_tool_path(request);
+  ASSERT_TRUE(result) << result.error().message;
+  const SmoothPath& smooth = result.value();
   EXPECT_GT(smooth.turned_samples, 10U);
   EXPECT_LT(smooth.turned_samples, channel.path.size());
   EXPECT_GT(smooth.rounds, 1U);
   EXPECT_GT(smooth.largest_turn_deg, 1);
   for (const ToolPose& tool : smooth.tools) {
     EXPECT_FALSE(find_interference(tool, request.around.shape, channel.walls, request.around.margin_mm).touches);
+  }
+  for (std::size_t k = 0; k + 1 < channel.path.size(); ++k) {
+    for (const double share : {0.1, 0.35, 0.6, 0.85}) {
+      const auto at = [share, k](const std::vector<double>& v) { return (v[k] + share * (v[k + 1] - v[k])) * kDegree; };
+      const double a = at(smooth.a.angle);
+      const double c = at(smooth.c.angle);
+      const ToolPose tool{{0, 0.2 * (static_cast<double>(k) + share), 0},
+                          {std::sin(a) * std::sin(c), std::sin(a) * std::cos(c), std::cos(a)}};
+      EXPECT_LT(find_interference(tool, request.around.shape, channel.walls, request.around.margin_mm).depth_mm,
+                0.9 / 31);
+    }
   }
   EXPECT_NEAR(smooth.c.angle[20], channel.c[20], 1);
   EXPECT_LE(smooth.c.largest_deviation, smooth.largest_turn_deg + 1);
@@ -93,10 +106,71 @@ TEST(SmoothToolPath, TurnsCForAStopThatTouchesBetweenFreeSamples) {
   request.line_of_sample = lines;
   const auto refused = smooth_tool_path(request);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message.substr(0, 9), "line 71: ");
+  EXPECT_NE(refused.error().message.find("line 71: "), std::string::npos) << refused.error().message;
   const std::vector<HeldStop> outside{{channel.path.size(), {0, 0, 0}, 0}};
   request.stops = outside;
   EXPECT_EQ(smooth_tool_path(request).error().code, ErrorCode::out_of_range);
+}
+
+// Blocks 5 mm apart, the tool leans along the path; a thorn reaches into the tool's way between two blocks.
+TEST(SmoothToolPath, TurnsCWhereTheToolTouchesBetweenTwoBlocksOnly) {
+  const double a_rad = 30 * kDegree;
+  std::vector<double> s;
+  std::vector<double> a;
+  std::vector<double> c;
+  std::vector<ToolPose> path;
+  for (int k = 0; k <= 20; ++k) {
+    s.push_back(k);
+    a.push_back(30);
+    c.push_back(0);
+    path.push_back({{0, 5.0 * k, 0}, {0, std::sin(a_rad), std::cos(a_rad)}});
+  }
+  const std::vector<Vector3> thorn{{0.5, 53.5, 20}};
+  SmoothPathRequest request{path, a, c, s, 1, 16, 0, {}};
+  request.around = {thorn, {0.5, 0, 40, 0}, 0.3, 1.5 * kDegree, 60 * kDegree};
+  for (const ToolPose& tool : path) {  // every block is free as it stands
+    ASSERT_FALSE(find_interference(tool, request.around.shape, thorn, request.around.margin_mm).touches);
+  }
+  for (const bool axes : {false, true}) {
+    request.straight_axes_about_mm = axes ? std::optional(Vector3{0, 0, -30}) : std::nullopt;
+    const auto result = smooth_tool_path(request);
+    ASSERT_TRUE(result) << result.error().message;
+    const SmoothPath& smooth = result.value();
+    EXPECT_GE(smooth.turned_samples, 2U);
+    EXPECT_GT(smooth.clearance_mm, 0);
+    for (std::size_t k = 0; k + 1 < path.size() && !axes; ++k) {
+      for (int i = 0; i <= 500; ++i) {  // finer than it tests itself; a 31st of the reach may be missed
+        const double share = i / 500.0;
+        const double c_rad = (smooth.c.angle[k] + share * (smooth.c.angle[k + 1] - smooth.c.angle[k])) * kDegree;
+        const ToolPose tool{{0, 5.0 * (static_cast<double>(k) + share), 0},
+                            {std::sin(a_rad) * std::sin(c_rad), std::sin(a_rad) * std::cos(c_rad), std::cos(a_rad)}};
+        EXPECT_LT(find_interference(tool, request.around.shape, thorn, request.around.margin_mm).depth_mm, 0.8 / 31);
+      }
+    }
+  }
+  request.around.c_most_rad = 0;
+  const auto refused = smooth_tool_path(request);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message.find("between sample 9 and sample 10: "), 0U) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("another tilt, or add points between the two"), std::string::npos);
+  std::vector<std::size_t> lines;
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    lines.push_back(100 + k);
+  }
+  request.line_of_sample = lines;
+  EXPECT_EQ(smooth_tool_path(request).error().message.find("between line 108 and line 109: "), 0U)
+      << smooth_tool_path(request).error().message;
+}
+
+// The nearest free C is on the outer side of the wall's edge at one block, on its inner side at the next.
+TEST(SmoothToolPath, NamesBothBlocksWhereNoTurnAtThemFreesTheWayBetween) {
+  const Channel channel(25, 25);
+  const auto refused = smooth_tool_path(channel.request());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(refused.error().message.find("between sample "), 0U) << refused.error().message;
+  EXPECT_NE(refused.error().message.find(" and sample "), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("or add points between the two"), std::string::npos);
 }
 
 TEST(SmoothToolPath, SaysWhichSampleCannotBeFreed) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,8 @@ struct SmoothPathRequest {
   Surroundings around;
   std::span<const HeldStop> stops{};              ///< tested as well; by sample
   std::span<const std::size_t> line_of_sample{};  ///< for errors; none: samples are named by their number
+  /// Between samples the machine's axes move evenly, about this rotary centre; none: the tip does, with A and C.
+  std::optional<Vector3> straight_axes_about_mm{};
 };
 
 struct SmoothPath {
@@ -50,9 +53,11 @@ struct SmoothPath {
 
 /// The loop of [C2] with bounds: reversals are removed from A and C, tool (or focus) centres are computed anew, every
 /// sample is tested against the surroundings; where one touches, C is turned by increments until it is free, and the
-/// path is smoothed again, until all samples and stops are free. What lies between two samples is not tested.
-/// Fails like remove_reversals() and turn_clear(), naming the sample; with out_of_range where samples still touch after
-/// 8 rounds, and where stops are not in order or their samples not there.
+/// path is smoothed again, until all samples and stops are free, and so is what lies between them, in steps in which
+/// no point of the tool moves by more than half of (radius at the tip + margin), or 0.02 mm if that is more: what a
+/// step can miss is at most a 31st of that reach deep. Where it touches between two samples both are turned. Fails like
+/// remove_reversals() and turn_clear(), naming the sample, or the two it lies between; with out_of_range where samples,
+/// or what is between them, still touch after 8 rounds, and where stops are not in order or their samples not there.
 Result<SmoothPath> smooth_tool_path(const SmoothPathRequest& request);
 
 }  // namespace gravure::motion
