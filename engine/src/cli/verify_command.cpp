@@ -65,12 +65,25 @@ Job with_files_of(const Plan& plan, Job job) {
   return job;
 }
 
+/// Ramps that a job asks for by its machine file.
+void keep_ramps(const Plan& plan, Plan& again) {
+  if (!again.spin) {
+    again.spin = plan.spin;
+  }
+  if (again.carriage && plan.carriage && !again.carriage->spin) {
+    again.carriage->spin = plan.carriage->spin;
+  }
+}
+
 /// The job text in a program must lead to the very plan, and the order of layers, that stand in it.
 Result<std::optional<std::string>> plan_contradiction(const ProgramHeader& header, const Job& job) {
   const std::int64_t exposures =
       header.plan.carriage ? header.plan.carriage->layers : revolutions_per_band(header.plan);
   GRAVURE_TRY(Plan again, make_plan(with_files_of(header.plan, job), image_columns(header.plan), exposures));
   again.warnings = header.plan.warnings;  // those about images are not made here
+  if (job.machine.file) {                 // the limits of the axes stand there, and the program keeps the ramps alone
+    keep_ramps(header.plan, again);
+  }
   if (plan_to_json(again) == plan_to_json(header.plan)) {
     const std::optional<std::int64_t> wrong = wrong_layer(header, job.image.order);
     return wrong ? std::optional(
