@@ -247,7 +247,9 @@ TEST(Search, KeepsItsLimitsToTheLastBit) {
     problem.jerk_max_mm_s3 = random.log_between(1e5, 1e7);
     SearchOptions options;
     options.robust = false;
-    for (const Alternative& row : search(problem, options).value().alternatives) {
+    const auto found = search(problem, options);
+    ASSERT_TRUE(found) << found.error().message;
+    for (const Alternative& row : found.value().alternatives) {
       const Candidate& c = row.profile.value();
       EXPECT_LE(c.v_mm_s, problem.v_max_mm_s) << row.name;
       EXPECT_LE(c.a_up_mm_s2, problem.a_up_max_mm_s2) << row.name;
