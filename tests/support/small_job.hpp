@@ -72,7 +72,7 @@ inline void compile_job(SmallJob& small, std::int64_t revolutions, LayerOrder or
 }
 
 inline DeviceFactory emulated() {
-  return [](PinObserver& pins) -> std::unique_ptr<DeviceLink> {
+  return [](PinObserver& pins) -> std::unique_ptr<LineDevice> {
     return std::make_unique<emulator::EmulatedDevice>(&pins);
   };
 }

@@ -50,7 +50,7 @@ Result<int> run(const Options& options, const Command& command) {
       chunk.load(*program, {header.layer_of_revolution[static_cast<std::size_t>(options.revolution)], chunk_number}));
   SlotText slots(plan);
   slots.start(options.revolution * plan.rotary.lines_per_revolution + options.line);
-  const std::unique_ptr<DeviceLink> device = emulated_devices()(slots);
+  const std::unique_ptr<LineDevice> device = emulated_devices()(slots);
   GRAVURE_CHECK(device->configure(device_setup(plan, options.revolution, chunk.first_line())));
   GRAVURE_CHECK(chunk.send(header, options.revolution, *device));
   const bool reverse = line_is_reverse(plan, options.revolution, options.line);

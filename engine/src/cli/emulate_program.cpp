@@ -93,9 +93,9 @@ struct Lines {
 };
 
 /// Lets through the frames of some lines alone.
-class SomeLines final : public DeviceLink {
+class SomeLines final : public LineDevice {
  public:
-  SomeLines(DeviceLink& link, Lines lines, std::int64_t lines_per_revolution)
+  SomeLines(LineDevice& link, Lines lines, std::int64_t lines_per_revolution)
       : link_(link), lines_(lines), lines_per_revolution_(lines_per_revolution) {}
   Result<void> configure(const DeviceSetup& setup) override { return link_.configure(setup); }
   Result<void> send(const LineFrame& frame) override {
@@ -105,7 +105,7 @@ class SomeLines final : public DeviceLink {
   DeviceStatus status() const override { return link_.status(); }
 
  private:
-  DeviceLink& link_;
+  LineDevice& link_;
   Lines lines_;
   std::int64_t lines_per_revolution_;
 };
@@ -170,7 +170,7 @@ Lines lines_of(const Plan& plan, TickWindow window, const Mistakes& mistakes) {
   return lines;
 }
 
-Result<void> send_lines(LineSource& program, Lines lines, DeviceLink& device) {
+Result<void> send_lines(LineSource& program, Lines lines, LineDevice& device) {
   const ProgramHeader& header = program.header();
   const std::int64_t per_revolution = header.plan.rotary.lines_per_revolution;
   SomeLines some(device, lines, per_revolution);
@@ -228,7 +228,7 @@ Rational turns_after(const Plan& plan, std::uint64_t tick) {
 }
 
 /// The frames of some lines through the wires of a board.
-class WireLink final : public DeviceLink {
+class WireLink final : public LineDevice {
  public:
   explicit WireLink(emulator::BoardHost& host) : host_(host) {}
   Result<void> configure(const DeviceSetup&) override { return {}; }

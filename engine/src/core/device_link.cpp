@@ -1,19 +1,6 @@
 #include "gravure/core/device_link.hpp"
 
-#include "gravure/core/crc32c.hpp"
-
 namespace gravure {
-
-std::uint32_t frame_crc32c(const LineFrame& frame) noexcept {
-  std::byte head[24];
-  std::size_t at = 0;
-  for (const std::int64_t field : {frame.revolution, frame.line, frame.first_slot}) {
-    for (unsigned shift = 0; shift < 64; shift += 8) {
-      head[at++] = static_cast<std::byte>(static_cast<std::uint64_t>(field) >> shift);
-    }
-  }
-  return ~crc32c_continue(crc32c_continue(kCrc32cStart, head), frame.bits);
-}
 
 std::string to_string(DeviceFault fault) {
   switch (fault) {
@@ -31,6 +18,20 @@ std::string to_string(DeviceFault fault) {
       return "host silence";
     case DeviceFault::interlock:
       return "interlock";
+  }
+  return "unknown";
+}
+
+std::string to_string(BoardState state) {
+  switch (state) {
+    case BoardState::idle:
+      return "idle";
+    case BoardState::filling:
+      return "filling";
+    case BoardState::running:
+      return "running";
+    case BoardState::stopped:
+      return "stopped";
   }
   return "unknown";
 }

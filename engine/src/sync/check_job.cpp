@@ -3,7 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "gravure/core/device_link.hpp"
+#include "gravure/core/line_device.hpp"
 #include "gravure/core/plan.hpp"
 
 namespace gravure::sync_plan {

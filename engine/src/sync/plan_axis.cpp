@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "check_job.hpp"
-#include "gravure/core/device_link.hpp"
+#include "gravure/core/line_device.hpp"
 #include "line_window.hpp"
 
 namespace gravure::sync_plan {

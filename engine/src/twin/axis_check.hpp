@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "gravure/core/device_link.hpp"
+#include "gravure/core/line_device.hpp"
 #include "gravure/core/plan.hpp"
 
 namespace gravure {

@@ -32,7 +32,7 @@ class ChunkRun {
   LineSource& program_;
   const CancelToken* cancel_;
   Watcher watcher_;
-  std::unique_ptr<DeviceLink> device_;
+  std::unique_ptr<LineDevice> device_;
   ProgramChunk chunk_;
 };
 

@@ -76,7 +76,7 @@ std::span<const std::byte> ProgramChunk::lines_for(const ProgramHeader& header, 
   return turn ? turned_ : stored_;
 }
 
-Result<void> ProgramChunk::send(const ProgramHeader& header, std::int64_t revolution, DeviceLink& device) {
+Result<void> ProgramChunk::send(const ProgramHeader& header, std::int64_t revolution, LineDevice& device) {
   const Plan& plan = header.plan;
   const std::span<const std::byte> lines = lines_for(header, revolution);
   const std::int64_t bytes = header.line_bytes();

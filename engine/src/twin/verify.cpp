@@ -325,7 +325,7 @@ class Verifier::Worker final : public PinObserver {
   bool comparable_ = false;  // image_ holds the lines of the chunk
   bool invert_ = false;
   std::int64_t first_ordinal_ = 0;
-  std::unique_ptr<DeviceLink> device_;
+  std::unique_ptr<LineDevice> device_;
 };
 
 void Verifier::work_on_tickets(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gravure/core/device_link.hpp"
 #include "gravure/core/error.hpp"
+#include "gravure/core/line_device.hpp"
 #include "gravure/fpga/ab_registers.hpp"
 
 namespace gravure::emulator {

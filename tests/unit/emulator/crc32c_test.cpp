@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gravure/core/device_link.hpp"
+#include "gravure/core/line_device.hpp"
 
 namespace gravure {
 namespace {

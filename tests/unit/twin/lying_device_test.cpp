@@ -5,7 +5,7 @@ namespace gravure::test {
 namespace {
 
 /// The emulated board behind a screen that changes what its pins show.
-class LyingDevice final : public DeviceLink, private PinObserver {
+class LyingDevice final : public LineDevice, private PinObserver {
  public:
   struct Lie {
     std::int64_t ordinal = 0;  ///< of the line that is lied about
@@ -66,7 +66,7 @@ VerifyReport report_with(const LyingDevice::Lie& lie, bool fractional = true) {
   compile_job(small, 8, LayerOrder::cycle);
   const Result<VerifyReport> report = verify_job(
       small, small.lines(), {.threads = 2},
-      [&](PinObserver& pins) -> std::unique_ptr<DeviceLink> { return std::make_unique<LyingDevice>(pins, lie); });
+      [&](PinObserver& pins) -> std::unique_ptr<LineDevice> { return std::make_unique<LyingDevice>(pins, lie); });
   EXPECT_TRUE(report) << report.error().message;
   return report ? report.value() : VerifyReport{};
 }
@@ -121,7 +121,7 @@ TEST(LyingDevice, IsCaughtWhenTheAxisEndsOneEdgeOff) {
 }
 
 /// A board that refuses everything from some line on.
-class TiredDevice final : public DeviceLink {
+class TiredDevice final : public LineDevice {
  public:
   explicit TiredDevice(PinObserver& pins) : device_(&pins) {}
   Result<void> configure(const DeviceSetup& setup) override { return device_.configure(setup); }
@@ -142,7 +142,7 @@ TEST(TiredDevice, IsReportedWithWhatItSaid) {
   sound_job(small);
   const Result<VerifyReport> report =
       verify_job(small, small.lines(), {},
-                 [](PinObserver& pins) -> std::unique_ptr<DeviceLink> { return std::make_unique<TiredDevice>(pins); });
+                 [](PinObserver& pins) -> std::unique_ptr<LineDevice> { return std::make_unique<TiredDevice>(pins); });
   ASSERT_TRUE(report);
   expect_violation(report.value(), "the device refused revolution 6, line 5");
   expect_violation(report.value(), "interlock");

@@ -297,7 +297,7 @@ TEST(Modes, WrongCarriageRegistersAreSeen) {
 }
 
 /// A device whose second channel misses an edge.
-class LameCarriage final : public DeviceLink {
+class LameCarriage final : public LineDevice {
  public:
   explicit LameCarriage(PinObserver& pins) : watcher_(pins), device_(&watcher_) {}
   Result<void> configure(const DeviceSetup& setup) override { return device_.configure(setup); }
@@ -326,7 +326,7 @@ TEST(Modes, LostCarriageEdgeIsNamedWithItsLine) {
   ASSERT_FALSE(HasFailure());
   const Result<VerifyReport> report =
       verify_job(small, lines_of(small), {},
-                 [](PinObserver& pins) -> std::unique_ptr<DeviceLink> { return std::make_unique<LameCarriage>(pins); });
+                 [](PinObserver& pins) -> std::unique_ptr<LineDevice> { return std::make_unique<LameCarriage>(pins); });
   ASSERT_TRUE(report) << report.error().message;
   expect_violation(report.value(),
                    "the carriage stands wrong at 1 line start(s) or ends, the first at revolution 1, line 5");

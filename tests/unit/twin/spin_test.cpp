@@ -18,7 +18,7 @@ void spun_job(SmallJob& small, bool fractional, const Rational& start_deg) {
 }
 
 /// Tells what verify() asks of a device what it should not.
-class Lying final : public DeviceLink {
+class Lying final : public LineDevice {
  public:
   Lying(PinObserver& observer, std::uint64_t more) : device_(&observer), more_(more) {}
   Result<void> configure(const DeviceSetup& setup) override {

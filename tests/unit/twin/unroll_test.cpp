@@ -132,7 +132,7 @@ TEST(Unroll, StopsOnRequestAndHandsOnWhatTheSinkSays) {
 }
 
 /// Shows nothing of what it does.
-class SilentDevice final : public DeviceLink {
+class SilentDevice final : public LineDevice {
  public:
   Result<void> configure(const DeviceSetup& setup) override { return device_.configure(setup); }
   Result<void> send(const LineFrame& frame) override { return device_.send(frame); }
@@ -146,7 +146,7 @@ TEST(Unroll, RefusesADeviceThatShowsNoLines) {
   SmallJob small;
   sound_job(small);
   const Unrolled unrolled = unroll_to_memory(
-      small, 2, {}, [](PinObserver&) -> std::unique_ptr<DeviceLink> { return std::make_unique<SilentDevice>(); });
+      small, 2, {}, [](PinObserver&) -> std::unique_ptr<LineDevice> { return std::make_unique<SilentDevice>(); });
   ASSERT_FALSE(unrolled.result);
   EXPECT_EQ(unrolled.result.error().code, ErrorCode::device);
   EXPECT_TRUE(unrolled.bytes.empty());

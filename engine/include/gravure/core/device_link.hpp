@@ -1,113 +1,79 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
+#include "gravure/core/device_fault.hpp"
 #include "gravure/core/error.hpp"
 
 namespace gravure {
 
-/// What a board takes at most (docs/registers.md: seeds_per_slot, clock_multiplier).
-inline constexpr std::int64_t kMostSeedsPerSlot = 65'535;
-inline constexpr std::int64_t kMostClockMultiplier = 16;
-
-/// A segment of a channel's schedule: its counter's increment for so many seed clocks.
-struct ScheduleSegment {
-  std::uint64_t increment = 0;
-  std::uint64_t seeds = 0;
+/// Which board it is, as it and its bus say.
+struct DeviceIdentity {
+  std::string serial;
+  std::string product;
+  std::string place;                   ///< "bus 1, device 4", a folder, a file
+  std::uint16_t protocol_version = 0;  ///< what goes over the wire (docs/protocol.md)
+  std::int64_t link_bits_per_s = 0;    ///< that the bus can carry to the board; 0: not known
 };
 
-/// The second A-B channel, which drives the carriage of helical jobs; its counter is as wide as the first. It stands
-/// still with an increment of 0. Boards have a fraction for the first channel alone: here only 0/1 is taken.
-struct CarriageSetup {
-  std::uint64_t prescaler = 1;
-  std::uint64_t increment = 0;
-  std::uint64_t fraction_num = 0;
-  std::uint64_t fraction_den = 1;
-  std::vector<ScheduleSegment> spin_up = {};  ///< as that of the first channel
+enum class BoardState : std::uint8_t {
+  idle,     ///< no lines run
+  filling,  ///< the position is set, frames are taken, no line has begun
+  running,  ///< lines run
+  stopped,  ///< by a fault, which stands
+};
+std::string to_string(BoardState state);
+
+/// What a board says of itself whenever something has changed (bulk IN). Lines count since the position was set.
+struct BoardStatus {
+  std::uint16_t protocol_version = 0;
+  BoardState state = BoardState::idle;
+  DeviceFault fault = DeviceFault::none;  ///< the first since the last acknowledge
+  std::uint8_t faults = 0;                ///< all of them: bit 0 sequence to bit 5 interlock
+  bool gate_dark = true;
+  bool partial_line = false;         ///< the fault came while line `executed_lines` ran
+  std::uint32_t sequence = 0;        ///< of status messages: a gap is a lost one
+  std::uint64_t power_up = 0;        ///< another number each time the board has lost its state
+  std::uint64_t tick = 0;            ///< FPGA ticks since go
+  std::uint32_t revolution = 0;      ///< of the line that runs or comes next
+  std::uint32_t line = 0;            ///< likewise
+  std::uint32_t taken_lines = 0;     ///< whose frames are through, in sequence and whole
+  std::uint32_t executed_lines = 0;  ///< that have passed from their first slot to the last
+  std::uint32_t closed_slot = 0;     ///< partial_line: slots of it that had passed when the gate closed
+  std::uint32_t level_bytes = 0;     ///< bytes of the stream that wait in the board, frames and parts of one
+  std::uint32_t capacity_bytes = 0;  ///< most that can
 };
 
-/// What is loaded into the board's registers before a program runs; all integers, all in FPGA ticks or slots.
-struct DeviceSetup {
-  int counter_bits = 32;
-  std::uint64_t prescaler = 1;
-  std::uint64_t increment = 0;
-  std::uint64_t fraction_num = 0;
-  std::uint64_t fraction_den = 1;
-  CarriageSetup carriage = {};
-  /// Run from rest before tick 0, which is at its end: as `schedule_increment` and `schedule_seeds` take it, with `go`
-  /// at its begin and its seed clocks in `first_tick`. Empty: the counter begins at 0 with tick 0.
-  std::vector<ScheduleSegment> spin_up = {};
-  std::int64_t clock_multiplier = 1;  ///< j: FPGA ticks per seed pulse
-  std::int64_t ticks_per_slot = 1;    ///< a whole multiple of j
-  std::int64_t slots_per_line = 1;    ///< np
-  std::int64_t window_slots = 0;      ///< pixels per line; the gate stays dark outside the window
-  std::int64_t lines_per_revolution = 1;
-  std::int64_t revolutions = 1;
-  std::int64_t first_revolution = 0;  ///< start here, with the axis where the program has it at that tick
-  std::int64_t first_line = 0;        ///< of first_revolution
-};
-
-/// One line on the wire: the bits of its marking window.
-struct LineFrame {
-  std::int64_t revolution = 0;
-  std::int64_t line = 0;
-  std::int64_t first_slot = 0;      ///< of the window
-  std::span<const std::byte> bits;  ///< (window_slots + 7) / 8 bytes, MSB first, 1 fires
-  std::uint32_t crc32c = 0;         ///< frame_crc32c() of the frame
-};
-
-/// CRC-32C over revolution, line, first slot (64-bit little endian each) and the bits.
-std::uint32_t frame_crc32c(const LineFrame& frame) noexcept;
-
-/// Where the axis stands, by the A-B generator's own count since tick 0 of the job.
-struct AxisState {
-  std::uint64_t edges = 0;        ///< A-B edges put out
-  std::uint64_t counts_high = 0;  ///< the counter unwrapped, 128 bits: 2^(n-2) are an edge
-  std::uint64_t counts_low = 0;
-};
-
-/// A line as the board's pins showed it.
-struct ExecutedLine {
-  std::int64_t start_tick = 0;       ///< of its slot 0
-  std::int64_t ordinal = 0;          ///< lines since tick 0 of the job
-  std::int64_t first_slot = 0;       ///< of `fired`
-  std::span<const std::byte> fired;  ///< window_slots bits, MSB first: what the gate let through
-  AxisState axis_at_start;
-  AxisState carriage_at_start = {};
-};
-
-/// Sees the pins of an emulated board (real boards have none to show).
-class PinObserver {
- public:
-  virtual ~PinObserver() = default;
-  virtual void on_line(const ExecutedLine& line) = 0;
-};
-
-enum class DeviceFault : std::uint8_t { none, sequence, checksum, shape, underrun, host_silence, interlock };
-std::string to_string(DeviceFault fault);
-
-struct DeviceStatus {
-  std::int64_t lines_executed = 0;
-  std::int64_t tick = 0;                  ///< ticks since tick 0 of the job
-  AxisState axis;                         ///< at that tick
-  AxisState carriage = {};                ///< likewise
-  AxisState axis_spun_up = {};            ///< before tick 0, by the schedule from rest
-  AxisState carriage_spun_up = {};        ///< likewise
-  DeviceFault fault = DeviceFault::none;  ///< sticky; the gate is closed while it stands
-  std::string detail;                     ///< what was refused and why
-};
-
-/// The way to a board, real or emulated. Refuses what the board would refuse, with ErrorCode::device.
+/// The wire to a board: USB, an emulated board in this process, or a recorded session. Registers are those of
+/// docs/registers.md; the stream is that of docs/protocol.md. One thread at a time.
+///
+/// Errors: device (refused, stalled, unplugged: the message says which), timeout, version_mismatch, io. A link that has
+/// failed once goes on failing; the board closes its gate by itself when its host is silent.
 class DeviceLink {
  public:
+  using Milliseconds = std::chrono::milliseconds;
+
   virtual ~DeviceLink() = default;
-  virtual Result<void> configure(const DeviceSetup& setup) = 0;
-  virtual Result<void> send(const LineFrame& frame) = 0;
-  virtual DeviceStatus status() const = 0;
+  virtual const DeviceIdentity& identity() const noexcept = 0;
+
+  virtual Result<std::uint32_t> read_register(std::uint8_t address) = 0;
+  virtual Result<void> write_register(std::uint8_t address, std::uint32_t value) = 0;
+
+  /// Hands over bytes of the stream, in order, and returns how many were taken: fewer where the link is full, 0 where
+  /// it stayed so for `patience`. What was taken may still be on its way. Any cut between calls is allowed.
+  virtual Result<std::size_t> send(std::span<const std::byte> stream, Milliseconds patience) = 0;
+  /// Waits until all that was taken is in the board; false where that takes longer.
+  virtual Result<bool> drain(Milliseconds patience) = 0;
+  /// Drops what is still on its way (before the position is set anew).
+  virtual Result<void> abandon() = 0;
+
+  /// The newest status that has not been given yet; none where none came in time. Older ones are skipped.
+  virtual Result<std::optional<BoardStatus>> next_status(Milliseconds patience) = 0;
 };
 
 }  // namespace gravure

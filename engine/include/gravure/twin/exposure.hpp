@@ -5,13 +5,13 @@
 #include <memory>
 #include <vector>
 
-#include "gravure/core/device_link.hpp"
+#include "gravure/core/line_device.hpp"
 #include "gravure/core/program.hpp"
 
 namespace gravure {
 
 /// Makes a device whose pins are watched by the observer.
-using DeviceFactory = std::function<std::unique_ptr<DeviceLink>(PinObserver&)>;
+using DeviceFactory = std::function<std::unique_ptr<LineDevice>(PinObserver&)>;
 
 /// The registers a program asks for, starting at a line.
 DeviceSetup device_setup(const Plan& plan, std::int64_t first_revolution, std::int64_t first_line);
@@ -24,7 +24,7 @@ class ProgramChunk {
   /// The chunk's lines in time order, as a revolution that exposes its layer has them; valid until the next call.
   std::span<const std::byte> lines_for(const ProgramHeader& header, std::int64_t revolution);
   /// Sends the chunk's lines for a revolution that exposes its layer. A device refusal is returned as it is.
-  Result<void> send(const ProgramHeader& header, std::int64_t revolution, DeviceLink& device);
+  Result<void> send(const ProgramHeader& header, std::int64_t revolution, LineDevice& device);
   std::int64_t first_line() const noexcept { return first_line_; }
   std::int64_t lines() const noexcept { return lines_; }
 

@@ -4,8 +4,8 @@
 #include <functional>
 #include <span>
 
-#include "gravure/core/device_link.hpp"
 #include "gravure/core/error.hpp"
+#include "gravure/core/line_device.hpp"
 #include "gravure/fpga/synchro.hpp"
 
 namespace gravure::emulator {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "gravure/core/device_link.hpp"
 #include "gravure/core/error.hpp"
+#include "gravure/core/line_device.hpp"
 #include "gravure/emulator/schedule.hpp"
 #include "gravure/fpga/ab_registers.hpp"
 #include "gravure/fpga/pulse_gate.hpp"
@@ -18,7 +18,7 @@ namespace gravure::emulator {
 inline constexpr std::int64_t kMaxWindowSlots =
     (std::int64_t{8} << static_cast<unsigned>(fpga::kFifoBitsRange.high)) / 2;
 
-/// A board without the board: the bit-exact FPGA model behind DeviceLink. It refuses what a board would refuse, by the
+/// A board without the board: the bit-exact FPGA model behind LineDevice. It refuses what a board would refuse, by the
 /// register map (docs/registers.md): every width and range is taken from there. Where boards may differ (counter_bits,
 /// clock_multiplier, fifo_bits) it is the board that the setup asks for, within the range of that register.
 ///
@@ -29,7 +29,7 @@ inline constexpr std::int64_t kMaxWindowSlots =
 ///
 /// Not safe for several threads at once. The observer, if any, must outlive the device; on_line() is called inside
 /// send(), for dark lines too, and what `fired` refers to is valid only during the call.
-class EmulatedDevice final : public DeviceLink {
+class EmulatedDevice final : public LineDevice {
  public:
   explicit EmulatedDevice(PinObserver* observer = nullptr) : observer_(observer) {}
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "gravure/core/device_link.hpp"
 #include "gravure/core/error.hpp"
+#include "gravure/core/line_device.hpp"
 #include "gravure/emulator/emulated_device.hpp"
 
 namespace gravure::emulator {
@@ -45,7 +45,7 @@ struct DarkLines {
 
 /// A host that makes the planned mistakes in front of an emulated board, and goes on sending: the board passes every
 /// line dark from the fault on, until the host acknowledges.
-class FaultyHost final : public DeviceLink {
+class FaultyHost final : public LineDevice {
  public:
   /// bad_argument where two faults hit one line, or an acknowledgement comes where no fault stands. The device must
   /// outlive the host. Before a line of `acknowledgements`

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "gravure/core/device_link.hpp"
+#include "gravure/core/line_device.hpp"
 #include "gravure/fpga/ab_edges.hpp"
 
 namespace gravure::emulator {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "gravure/core/device_link.hpp"
 #include "gravure/core/error.hpp"
+#include "gravure/core/line_device.hpp"
 #include "gravure/fpga/ab_edges.hpp"
 
 namespace gravure::emulator {
