@@ -41,7 +41,7 @@ std::string relative_to(const std::string& path, const fs::path& folder) {
 Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, bool need_images) {
   LoadedJob loaded;
   GRAVURE_TRY(loaded.job, read_job(path));
-  GRAVURE_CHECK(read_machine_of(loaded.job));
+  GRAVURE_TRY(const std::optional<kinematics::Machine> machine, read_machine_of(loaded.job));
   GRAVURE_CHECK(read_scanner_files(loaded.job));
   const ImageSettings& image = loaded.job.image;
   if (names_images(image)) {
@@ -67,6 +67,7 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
   GRAVURE_TRY(loaded.columns, picture_columns(loaded.job, columns));
   GRAVURE_TRY(const std::int64_t exposures, resolve_revolutions(loaded.job, layers));
   GRAVURE_TRY(loaded.plan, make_plan(loaded.job, loaded.columns, exposures));
+  GRAVURE_TRY(loaded.joints, reach_of_machine(machine, loaded.job, loaded.plan));
   GRAVURE_TRY(loaded.trajectory, check_trajectory(loaded.job, loaded.plan));
   if (loaded.images) {
     GRAVURE_TRY(const std::vector<std::string> warnings, check_stack(loaded.plan, loaded.job, *loaded.images));

@@ -14,6 +14,7 @@
 #include "gravure/formats/image_stack.hpp"
 #include "gravure/pipeline/layer_reader.hpp"
 #include "gravure/scan/job_trajectory.hpp"
+#include "gravure/scan/joint_reach.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -25,6 +26,7 @@ struct LoadedJob {
   std::int64_t columns = 0;                       ///< pixels of an image line
   Plan plan;                                      ///< its warnings hold those of the images and the scanner, too
   std::optional<scan::JobTrajectory> trajectory;  ///< none without a scanner
+  std::vector<scan::JointReach> joints;           ///< of the machine file, where there is one; within their limits
 };
 
 /// Reads and plans a job. A job that gives pixels_per_line can be planned without its images, unless `need_images`.

@@ -1,11 +1,11 @@
 #include "job_machine.hpp"
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <filesystem>
 #include <string>
 
 #include "gravure/core/file_output.hpp"
+#include "gravure/scan/joint_reach.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -75,22 +75,13 @@ void fill_head(const MachineFile& file, Filling& filling, ScannerSettings& scann
 }
 
 /// The one joint of this kind along a direction; none where there is none.
-const Joint* axis_of(const MachineFile& file, JointKind kind, const kinematics::Vector3& along, const char* section,
-                     Filling& filling) {
-  constexpr double kParallel = 1 - 1e-9;
-  const Joint* found = nullptr;
-  for (const Joint& joint : file.machine.joints) {
-    if (joint.kind != kind || std::abs(joint.axis.dot(along)) < kParallel) {
-      continue;
-    }
-    if (found != nullptr) {
-      filling.refuse_file("joints " + found->name + " and " + joint.name + " could both be the axis of [" + section +
-                          "]; describe in this file only the one that is");
-      return nullptr;
-    }
-    found = &joint;
+const Joint* axis_of(const MachineFile& file, JointKind kind, const kinematics::Vector3& along,
+                     const std::string& section, Filling& filling) {
+  const auto found = scan::joint_along(file.machine, kind, along, "[" + section + "]");
+  if (!found) {
+    filling.refuse_file(found.error().message);
   }
-  return found;
+  return found && found.value() ? &file.machine.joints[*found.value()] : nullptr;
 }
 
 void fill_limits(Filling& filling, const Joint* joint, const std::string& section, AxisLimits& limits) {
@@ -133,9 +124,10 @@ Result<void> apply_machine(const MachineFile& file, Job& job) {
   return filling.result();
 }
 
-Result<void> read_machine_of(Job& job) {
+Result<std::optional<kinematics::Machine>> read_machine_of(Job& job) {
+  std::optional<kinematics::Machine> machine;
   if (!job.machine.file) {
-    return {};
+    return machine;
   }
   const std::string path = (std::filesystem::path(job.path).parent_path() / *job.machine.file).string();
   const auto text = read_file(path, kMaxMachineBytes);
@@ -143,7 +135,27 @@ Result<void> read_machine_of(Job& job) {
     return Error{text.error().code, job.place_of("machine.file") + text.error().message};
   }
   GRAVURE_TRY(const MachineFile file, parse_machine_file(text.value(), path));
-  return apply_machine(file, job);
+  GRAVURE_CHECK(apply_machine(file, job));
+  machine = file.machine;
+  return machine;
+}
+
+Result<std::vector<scan::JointReach>> reach_of_machine(const std::optional<kinematics::Machine>& machine,
+                                                       const Job& job, const Plan& plan) {
+  if (!machine) {
+    return std::vector<scan::JointReach>();
+  }
+  const auto at_key = [&job](const Error& error) {
+    return Error{error.code, job.place_of("machine.file") + "machine.file: " + error.message};
+  };
+  Result<std::vector<scan::JointReach>> reach = scan::joint_reach(*machine, plan);
+  if (!reach) {
+    return at_key(reach.error());
+  }
+  if (const Result<void> checked = scan::check_reach(reach.value()); !checked) {
+    return at_key(checked.error());
+  }
+  return reach;
 }
 
 }  // namespace gravure::cli

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "gravure/core/exact.hpp"
@@ -79,6 +80,34 @@ std::string repeat_text(const LoadedJob& loaded) {
                      repeat.mirror_around ? "around" : "", repeat.mirror_around && repeat.mirror_along ? " and " : "",
                      repeat.mirror_along ? "along" : "", loaded.plan.rotary.lines_per_revolution / repeat.around,
                      loaded.columns / repeat.along);
+}
+
+std::string joints_text(const std::vector<scan::JointReach>& joints) {
+  std::string text;
+  for (const scan::JointReach& joint : joints) {
+    const char* unit = joint.kind == kinematics::JointKind::revolute ? "deg" : "mm";
+    text += text.empty() ? fmt::format("{:<10}", "joints") : ", ";
+    text += joint.least == joint.most
+                ? fmt::format("{} at {:.9g} {}", joint.joint, joint.least, unit)
+                : fmt::format("{} from {:.9g} to {:.9g} {}", joint.joint, joint.least, joint.most, unit);
+  }
+  return text.empty() ? text : text + "\n";
+}
+
+/// Keyed as the machine file is.
+Json joints_json(const std::vector<scan::JointReach>& joints) {
+  Json json = Json::object();
+  const auto figure = [](const std::optional<double>& value) {
+    return value ? Json(std::round(*value * 1e9) / 1e9 + 0.0) : Json(nullptr);
+  };
+  for (const scan::JointReach& joint : joints) {
+    const std::string unit = joint.kind == kinematics::JointKind::revolute ? "_deg" : "_mm";
+    json[joint.joint] = {{"from" + unit, figure(joint.least)},
+                         {"to" + unit, figure(joint.most)},
+                         {"least" + unit, figure(joint.least_allowed)},
+                         {"most" + unit, figure(joint.most_allowed)}};
+  }
+  return json;
 }
 
 }  // namespace
@@ -170,6 +199,9 @@ void add_plan(CLI::App& app, Command& command) {
           }
           plan["bands"]["position_mm"] = places;
         }
+        if (!loaded.joints.empty()) {
+          plan["joints"] = joints_json(loaded.joints);
+        }
         plan["image"] = {{"fires", polarity_name(image.fires)},
                          {"lines_along", image.lines_along == LinesAlong::rows ? "rows" : "columns"},
                          {"order", order_name(image.order)}};
@@ -185,6 +217,7 @@ void add_plan(CLI::App& app, Command& command) {
         if (loaded.trajectory) {
           print(trajectory_text(loaded.trajectory->of_revolution(0)));
         }
+        print(joints_text(loaded.joints));
         print(fmt::format("{:<10}{} fires, lines along {}, layers in order \"{}\"\n", "image",
                           polarity_name(image.fires), image.lines_along == LinesAlong::rows ? "rows" : "columns",
                           order_name(image.order)));
