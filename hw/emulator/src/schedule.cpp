@@ -5,8 +5,6 @@
 namespace gravure::emulator {
 namespace {
 
-constexpr std::uint64_t kMostSegments = 256;  // what the list of an increment_schedule holds
-
 Error refusal(const std::string& what) {
   return {ErrorCode::device, "the board refuses " + what};
 }
@@ -32,9 +30,9 @@ Result<void> check_schedule(const std::string& field, const std::vector<Schedule
   if (segments.empty()) {
     return {};
   }
-  if (segments.size() > kMostSegments) {
+  if (segments.size() > kScheduleSegments) {
     return refusal(field + " of " + std::to_string(segments.size()) + " segments: its list holds " +
-                   std::to_string(kMostSegments));
+                   std::to_string(kScheduleSegments));
   }
   std::uint64_t seeds = 0;
   for (const ScheduleSegment& segment : segments) {
@@ -60,24 +58,32 @@ Result<void> check_schedule(const std::string& field, const std::vector<Schedule
   return {};
 }
 
+void AxisWalk::load(const fpga::AbRegisters& registers) noexcept {
+  registers_ = registers;
+  accumulator_ = since_step_ = 0;
+}
+
+void AxisWalk::run(std::uint64_t ticks) noexcept {
+  const fpga::Uint128 waited = fpga::Uint128{since_step_} + ticks;
+  const fpga::Uint128 steps = waited / registers_.prescaler;
+  since_step_ = static_cast<std::uint64_t>(waited % registers_.prescaler);
+  const fpga::Uint128 gathered = accumulator_ + steps * registers_.fraction_num;
+  counts_ += steps * registers_.increment + gathered / registers_.fraction_den;
+  accumulator_ = static_cast<std::uint64_t>(gathered % registers_.fraction_den);
+}
+
+AxisState AxisWalk::state() const noexcept {
+  return state_of(counts_, static_cast<std::uint64_t>(counts_ >> edge_shift(registers_)));
+}
+
 ScheduleEnd run_schedule(const std::vector<ScheduleSegment>& segments, const fpga::AbRegisters& registers,
                          std::int64_t ticks_per_seed) noexcept {
-  ScheduleEnd end;
-  std::uint64_t ticks = 0;
+  AxisWalk walk(registers);
   for (const ScheduleSegment& segment : segments) {
-    fpga::AbRegisters now = registers;
-    now.increment = segment.increment;
-    now.fraction_num = 0;
-    now.fraction_den = 1;
-    end.counts += fpga::position_after(now, ticks_of(segment, ticks_per_seed)).counts;
-    ticks += ticks_of(segment, ticks_per_seed);
+    walk.set_increment(segment.increment);  // the fraction runs on through all of them
+    walk.run(ticks_of(segment, ticks_per_seed));
   }
-  fpga::AbRegisters fraction = registers;  // it runs on through all segments
-  fraction.increment = 0;
-  const fpga::AbPosition gathered = fpga::position_after(fraction, ticks);
-  end.counts += gathered.counts;
-  end.accumulator = gathered.accumulator;
-  return end;
+  return {.counts = walk.counts(), .accumulator = walk.accumulator()};
 }
 
 AxisState spun_up(const ScheduleEnd& end, const fpga::AbRegisters& registers) noexcept {

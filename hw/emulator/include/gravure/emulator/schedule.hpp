@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,6 +10,34 @@
 #include "gravure/fpga/ab_edges.hpp"
 
 namespace gravure::emulator {
+
+/// What the list of an increment_schedule holds.
+inline constexpr std::size_t kScheduleSegments = 256;
+
+/// A channel's counter in closed form, from one change of its inputs to the next.
+class AxisWalk {
+ public:
+  AxisWalk() = default;
+  /// From a counter of 0. check(registers) must be none.
+  explicit AxisWalk(const fpga::AbRegisters& registers) noexcept : registers_(registers) {}
+  /// Prescaler and fraction begin anew; the counter goes on from where it is. check(registers) must be none.
+  void load(const fpga::AbRegisters& registers) noexcept;
+  /// From the next step on; at most max_increment().
+  void set_increment(std::uint64_t increment) noexcept { registers_.increment = increment; }
+  void run(std::uint64_t ticks) noexcept;
+
+  const fpga::AbRegisters& registers() const noexcept { return registers_; }
+  fpga::Uint128 counts() const noexcept { return counts_; }
+  std::uint64_t accumulator() const noexcept { return accumulator_; }
+  /// All edges since the counter was 0.
+  AxisState state() const noexcept;
+
+ private:
+  fpga::AbRegisters registers_;
+  fpga::Uint128 counts_ = 0;
+  std::uint64_t accumulator_ = 0;  ///< of the fraction
+  std::uint64_t since_step_ = 0;   ///< ticks since the prescaler's last step
+};
 
 /// Where a channel's schedule leaves its counter at tick 0.
 struct ScheduleEnd {
