@@ -36,9 +36,12 @@ Result<int> run(const Options& options, const Command& command) {
   if (!points) {
     return Error{points.error().code, options.points + ": " + points.error().message};
   }
-  GRAVURE_TRY(const scan::Calibration made,
-              scan::calibrate_field(points.value(),
-                                    {to_double(field_mm), options.columns, options.rows, to_double(smoothing)}));
+  const auto calibration =
+      scan::calibrate_field(points.value(), {to_double(field_mm), options.columns, options.rows, to_double(smoothing)});
+  if (!calibration) {
+    return Error{calibration.error().code, options.points + ": " + calibration.error().message};
+  }
+  const scan::Calibration& made = calibration.value();
   GRAVURE_CHECK(write_file(options.output, scan::field_grid_text(made.grid)));
   const scan::MeasuredPoint& worst = points.value()[made.worst];
   const double interpolation_um = figure(made.grid.interpolation_error_um());
@@ -49,14 +52,19 @@ Result<int> run(const Options& options, const Command& command) {
                 {"rows", made.grid.rows},
                 {"rms_um", figure(made.rms_um)},
                 {"max_um", figure(made.max_um)},
-                {"worst", {{"point", made.worst}, {"u_mm", worst.order.u_mm}, {"v_mm", worst.order.v_mm}}},
+                {"worst",
+                 {{"point", made.worst},
+                  {"u_mm", worst.order.u_mm},
+                  {"v_mm", worst.order.v_mm},
+                  {"alone_um", figure(made.worst_alone_um)}}},
                 {"interpolation_um", interpolation_um}});
   } else {
-    print(
-        fmt::format("{} marks on a grid of {} x {} in {}: misfit {:.4g} um rms, {:.4g} um at most (mark {} at U {} "
-                    "mm, V {} mm); interpolation adds {:.4g} um\n",
-                    points.value().size(), made.grid.columns, made.grid.rows, options.output, figure(made.rms_um),
-                    figure(made.max_um), made.worst, worst.order.u_mm, worst.order.v_mm, interpolation_um));
+    print(fmt::format(
+        "{} marks on a grid of {} x {} in {}: misfit {:.4g} um rms, {:.4g} um at most; interpolation adds {:.4g} "
+        "um\nmark {} at U {} mm, V {} mm stands out most: {:.4g} um from where the other marks say\n",
+        points.value().size(), made.grid.columns, made.grid.rows, options.output, figure(made.rms_um),
+        figure(made.max_um), interpolation_um, made.worst, worst.order.u_mm, worst.order.v_mm,
+        figure(made.worst_alone_um)));
   }
   return kDone;
 }
@@ -78,7 +86,7 @@ void add_calibrate(CLI::App& app, Command& command) {
   verb->add_option("--rows", options->rows, "Nodes along V")
       ->check(integer_from(kFewest, scan::kMostCalibrationNodes))
       ->capture_default_str();
-  verb->add_option("--smoothing", options->smoothing, "Weight of bending against misfit, above 0, at most 1")
+  verb->add_option("--smoothing", options->smoothing, "Weight of bending against misfit, 1e-12 to 1")
       ->capture_default_str();
   verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
 }

@@ -39,14 +39,18 @@ class FolderOutput {
       return Error{ErrorCode::bad_argument, path + ": is there already, and is no empty folder; give another"};
     }
     const fs::path whole = fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path();
+    if (whole.filename() == "." || whole.filename() == ".." || whole == whole.root_path()) {
+      return Error{ErrorCode::bad_argument, path +
+                                                ": a folder of another name takes its place when it is whole; give "
+                                                "the name of a new or empty folder"};
+    }
     std::string temporary = whole.string() + ".XXXXXX";
     if (::mkdtemp(temporary.data()) == nullptr) {
       return Error{ErrorCode::io, path + ": cannot make a folder beside it; is its parent there and writable?"};
     }
-    fs::permissions(temporary,
-                    fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
-                        fs::perms::others_exec,
-                    failed);
+    constexpr fs::perms kUsual = fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec |
+                                 fs::perms::others_read | fs::perms::others_exec;
+    fs::permissions(temporary, fs::exists(there) ? there.permissions() : kUsual, failed);
     return FolderOutput(whole, temporary);
   }
   FolderOutput(FolderOutput&& other) noexcept
@@ -86,12 +90,17 @@ std::string name_of(const LineSetPoints& line, bool flat) {
   return flat ? direction + (line.backwards ? "_backwards.gxy2" : "_onwards.gxy2") : direction + ".gxy2";
 }
 
+Result<void> check_not_stopped() {
+  return cancel_token().cancelled() ? Error{ErrorCode::cancelled, "stopped; nothing was written"} : Result<void>();
+}
+
 /// Rotary and flat: each way that lines run, once.
 Result<std::vector<StreamFile>> write_kinds(const ProgramHeader& header, scan::FrameForm form,
                                             const FolderOutput& folder) {
   std::vector<StreamFile> files;
   const bool flat = header.plan.mode == Mode::flat;
   for (const LineSetPoints& line : header.set_points) {
+    GRAVURE_CHECK(check_not_stopped());
     std::vector<scan::SetPoint> points;
     for (std::size_t k = 0; k < line.u_counts.size(); ++k) {
       points.push_back({0, 0, line.u_counts[k], line.v_counts[k]});
@@ -123,9 +132,7 @@ Result<std::vector<StreamFile>> write_revolution(const scan::JobTrajectory& traj
     scan::append_frames(form, frames.value(), output.text());
     output.flush(false);
     bar.update(line + 1, lines);
-    if (cancel_token().cancelled()) {
-      return Error{ErrorCode::cancelled, "stopped; nothing was written"};
-    }
+    GRAVURE_CHECK(check_not_stopped());
   }
   GRAVURE_CHECK(output.commit());
   return std::vector<StreamFile>{file};

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 namespace gravure {
@@ -16,10 +17,15 @@ bool is_separator(char c) noexcept {
   return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r';
 }
 
-/// The next number of the line; false where there is none.
-bool take_number(std::string_view& line, double& value) {
+/// The next number of the line; false where there is none, or an empty cell before it.
+bool take_number(std::string_view& line, double& value, bool first) {
+  int commas = 0;
   while (!line.empty() && is_separator(line.front())) {
+    commas += line.front() == ' ' || line.front() == '\r' ? 0 : 1;
     line.remove_prefix(1);
+  }
+  if (commas > (first ? 0 : 1)) {
+    return false;
   }
   if (!line.empty() && line.front() == '+') {
     line.remove_prefix(1);
@@ -30,6 +36,25 @@ bool take_number(std::string_view& line, double& value) {
   }
   line.remove_prefix(static_cast<std::size_t>(end - line.data()));
   return std::isfinite(value) && (line.empty() || is_separator(line.front()));
+}
+
+/// Words alone: nothing in it that is, or was meant as, a row.
+bool is_heading(std::string_view line, std::string_view wanted) {
+  std::string plain;
+  while (!line.empty()) {
+    const std::size_t end = line.find_first_of(",;\t");
+    std::string_view cell = line.substr(0, end);
+    double value = 0;
+    if (take_number(cell, value, true)) {
+      return false;
+    }
+    std::copy_if(cell.begin(), cell.end(), std::back_inserter(plain), [](char c) { return !is_separator(c); });
+    if (end != std::string_view::npos) {
+      plain += ',';
+    }
+    line.remove_prefix(end == std::string_view::npos ? line.size() : end + 1);
+  }
+  return wanted.empty() || plain == wanted;
 }
 
 bool is_blank_or_comment(std::string_view line) noexcept {
@@ -57,6 +82,10 @@ std::string shown(std::string_view line) {
 Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
                            const std::function<void(std::span<const double>)>& row) {
   assert(columns.count <= kMostCsvColumns);
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) {
+    text.remove_prefix(kByteOrderMark.size());
+  }
   bool heading_allowed = true;
   std::size_t rows = 0;
   for (std::size_t number = 1; !text.empty(); ++number) {
@@ -69,15 +98,17 @@ Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
     std::array<double, kMostCsvColumns> values{};
     std::string_view rest = line;
     std::size_t taken = 0;
-    while (taken < columns.count && take_number(rest, values[taken])) {
+    while (taken < columns.count && take_number(rest, values[taken], taken == 0)) {
       ++taken;
     }
     if (taken == columns.count && is_blank_or_comment(rest)) {
       row({values.data(), taken});
       ++rows;
-    } else if (!heading_allowed || taken > 0) {
+    } else if (!heading_allowed || !is_heading(line, columns.heading)) {
+      const std::string heading =
+          heading_allowed && !columns.heading.empty() ? ", or the heading " + std::string(columns.heading) : "";
       return Error{ErrorCode::bad_file, std::string(columns.subject) + ": line " + std::to_string(number) + ": \"" +
-                                            shown(line) + "\": must be " + std::string(columns.meaning)};
+                                            shown(line) + "\": must be " + std::string(columns.meaning) + heading};
     }
     heading_allowed = false;
     if (rows > kMaxRows) {

@@ -4,7 +4,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "gravure/core/csv_rows.hpp"
 
@@ -12,6 +15,7 @@ namespace gravure::scan {
 namespace {
 
 constexpr double kUmPerMm = 1000;
+constexpr double kMostLanding_mm = 1e4;
 
 /// Sums up the normal equations row by row: each row is a few weighted nodes.
 class Fit {
@@ -20,11 +24,11 @@ class Fit {
       : matrix_(Eigen::MatrixXd::Zero(nodes(grid), nodes(grid))), right_(Eigen::MatrixXd::Zero(nodes(grid), 2)) {}
 
   struct Term {
-    std::size_t node;
-    double weight;
+    std::size_t node = 0;
+    double weight = 0;
   };
 
-  void add(std::initializer_list<Term> terms, double factor, const GridPoint& value) {
+  void add(std::span<const Term> terms, double factor, const GridPoint& value) {
     for (const Term& a : terms) {
       const auto i = static_cast<Eigen::Index>(a.node);
       for (const Term& b : terms) {
@@ -35,15 +39,35 @@ class Fit {
     }
   }
 
-  Eigen::MatrixXd solve() const { return matrix_.ldlt().solve(right_); }
+  void solve() {
+    inverse_ = matrix_.ldlt().solve(Eigen::MatrixXd::Identity(matrix_.rows(), matrix_.cols()));
+    errors_ = matrix_.ldlt().solve(right_);
+  }
+  GridPoint error(std::size_t node) const {
+    const auto i = static_cast<Eigen::Index>(node);
+    return {errors_(i, 0), errors_(i, 1)};
+  }
+  /// By how much of itself a row with these terms moves its own fitted value: 0 to 1.
+  double leverage(std::span<const Term> terms) const {
+    double sum = 0;
+    for (const Term& a : terms) {
+      for (const Term& b : terms) {
+        sum += a.weight * b.weight * inverse_(static_cast<Eigen::Index>(a.node), static_cast<Eigen::Index>(b.node));
+      }
+    }
+    return sum;
+  }
 
  private:
   static Eigen::Index nodes(const FieldGrid& grid) { return static_cast<Eigen::Index>(grid.columns * grid.rows); }
   Eigen::MatrixXd matrix_;
   Eigen::MatrixXd right_;
+  Eigen::MatrixXd inverse_;
+  Eigen::MatrixXd errors_;
 };
 
-void add_point(Fit& fit, const FieldGrid& grid, const MeasuredPoint& point) {
+/// The four nodes round a point, with their shares of the error at it.
+std::array<Fit::Term, 4> nodes_round(const FieldGrid& grid, const GridPoint& point) {
   const auto cell = [](double value, double first, double last, std::size_t nodes, double& share) {
     const double cells = (value - first) / (last - first) * static_cast<double>(nodes - 1);
     const auto index = std::min(static_cast<std::size_t>(cells), nodes - 2);
@@ -52,14 +76,17 @@ void add_point(Fit& fit, const FieldGrid& grid, const MeasuredPoint& point) {
   };
   double u = 0;
   double v = 0;
-  const std::size_t column = cell(point.order.u_mm, grid.u_first_mm, grid.u_last_mm, grid.columns, u);
-  const std::size_t row = cell(point.order.v_mm, grid.v_first_mm, grid.v_last_mm, grid.rows, v);
+  const std::size_t column = cell(point.u_mm, grid.u_first_mm, grid.u_last_mm, grid.columns, u);
+  const std::size_t row = cell(point.v_mm, grid.v_first_mm, grid.v_last_mm, grid.rows, v);
   const std::size_t node = row * grid.columns + column;
-  fit.add({{node, (1 - u) * (1 - v)},
+  return {{{node, (1 - u) * (1 - v)},
            {node + 1, u * (1 - v)},
            {node + grid.columns, (1 - u) * v},
-           {node + grid.columns + 1, u * v}},
-          1, {point.landing.u_mm - point.order.u_mm, point.landing.v_mm - point.order.v_mm});
+           {node + grid.columns + 1, u * v}}};
+}
+
+GridPoint error_of(const MeasuredPoint& point) {
+  return {point.landing.u_mm - point.order.u_mm, point.landing.v_mm - point.order.v_mm};
 }
 
 /// Second differences along U and V, and the mixed ones: a bent grid costs, a plane one does not.
@@ -68,13 +95,17 @@ void add_bending(Fit& fit, const FieldGrid& grid, double factor) {
     for (std::size_t column = 0; column < grid.columns; ++column) {
       const std::size_t node = row * grid.columns + column;
       if (column + 2 < grid.columns) {
-        fit.add({{node, 1}, {node + 1, -2}, {node + 2, 1}}, factor, {});
+        fit.add(std::array<Fit::Term, 3>{{{node, 1}, {node + 1, -2}, {node + 2, 1}}}, factor, {});
       }
       if (row + 2 < grid.rows) {
-        fit.add({{node, 1}, {node + grid.columns, -2}, {node + 2 * grid.columns, 1}}, factor, {});
+        fit.add(std::array<Fit::Term, 3>{{{node, 1}, {node + grid.columns, -2}, {node + 2 * grid.columns, 1}}}, factor,
+                {});
       }
       if (column + 1 < grid.columns && row + 1 < grid.rows) {
-        fit.add({{node, 1}, {node + 1, -1}, {node + grid.columns, -1}, {node + grid.columns + 1, 1}}, factor, {});
+        fit.add(
+            std::array<Fit::Term, 4>{
+                {{node, 1}, {node + 1, -1}, {node + grid.columns, -1}, {node + grid.columns + 1, 1}}},
+            factor, {});
       }
     }
   }
@@ -106,36 +137,71 @@ Result<void> check_request(const std::vector<MeasuredPoint>& points, const Calib
                    fmt::format("calibrate: {} nodes: must be 2 to {} a side", nodes, kMostCalibrationNodes)};
     }
   }
-  if (!(request.smoothing > 0 && request.smoothing <= 1)) {
+  if (!(request.smoothing >= kLeastSmoothing && request.smoothing <= 1)) {
     return Error{ErrorCode::out_of_range,
-                 fmt::format("calibrate: smoothing = {}: must be above 0 and at most 1", request.smoothing)};
+                 fmt::format("calibrate: smoothing = {}: must be {} to 1", request.smoothing, kLeastSmoothing)};
   }
   const double half = request.field_mm / 2;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const MeasuredPoint& point = points[i];
-    if (!(std::abs(point.order.u_mm) <= half && std::abs(point.order.v_mm) <= half &&
-          std::hypot(point.landing.u_mm, point.landing.v_mm) <= 1e4)) {
+    if (!(std::abs(point.order.u_mm) <= half && std::abs(point.order.v_mm) <= half)) {
       return Error{ErrorCode::out_of_range,
-                   fmt::format("calibrate: point {}: order U = {}, V = {} mm: must lie in the field of {} mm", i + 1,
+                   fmt::format("calibrate: mark {}: order U = {}, V = {} mm: must lie in the field of {} mm", i,
                                point.order.u_mm, point.order.v_mm, request.field_mm)};
+    }
+    if (!(std::hypot(point.landing.u_mm, point.landing.v_mm) <= kMostLanding_mm)) {
+      return Error{ErrorCode::out_of_range,
+                   fmt::format("calibrate: mark {}: landing U = {}, V = {} mm: must be within {} mm of the centre", i,
+                               point.landing.u_mm, point.landing.v_mm, kMostLanding_mm)};
     }
   }
   if (points.size() < 3 || least_spread(points, request.field_mm) < 1e-6) {
     return Error{ErrorCode::bad_argument,
-                 fmt::format("calibrate: {} points: at least three are needed, not on one line", points.size())};
+                 fmt::format("calibrate: {} marks: at least three are needed, not on one line", points.size())};
   }
   return {};
+}
+
+/// Fills in the largest misfit and the point that stands out; the sum of the misfits' squares in um^2.
+double see_misfits(const std::vector<MeasuredPoint>& points, const Fit& fit, Calibration& calibration) {
+  constexpr double kRounding_um = 1e-6;
+  constexpr double kLeastFreedom = 1e-6;  // of a point that is all its nodes know: its distance is rounding
+  double squares = 0;
+  double most_saved = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::array<Fit::Term, 4> nodes = nodes_round(calibration.grid, points[i].order);
+    GridPoint left = error_of(points[i]);
+    for (const Fit::Term& term : nodes) {
+      const GridPoint at_node = fit.error(term.node);
+      left.u_mm -= term.weight * at_node.u_mm;
+      left.v_mm -= term.weight * at_node.v_mm;
+    }
+    const double misfit_um = std::hypot(left.u_mm, left.v_mm) * kUmPerMm;
+    squares += misfit_um * misfit_um;
+    calibration.max_um = std::max(calibration.max_um, misfit_um);
+    // Left out, a point of leverage h lies 1 / (1 - h) times as far off, and the fit costs misfit^2 / (1 - h) less.
+    const double freedom = std::max(1 - fit.leverage(nodes), kLeastFreedom);
+    const double saved = misfit_um * misfit_um / freedom;
+    if (saved > most_saved && misfit_um > kRounding_um) {
+      most_saved = saved;
+      calibration.worst_alone_um = misfit_um / freedom;
+      calibration.worst = i;
+    }
+  }
+  return squares;
 }
 
 }  // namespace
 
 Result<std::vector<MeasuredPoint>> parse_measured_points(std::string_view text) {
   std::vector<MeasuredPoint> points;
-  GRAVURE_CHECK(read_csv_rows(
-      text, {"measured points", "u_order, v_order, u_landing and v_landing in mm, four numbers and no more", 4},
-      [&points](std::span<const double> row) {
-        points.push_back({{row[0], row[1]}, {row[2], row[3]}});
-      }));
+  GRAVURE_CHECK(
+      read_csv_rows(text,
+                    {"measured points", "u_order, v_order, u_landing and v_landing in mm, four numbers and no more", 4,
+                     "u_order_mm,v_order_mm,u_landing_mm,v_landing_mm"},
+                    [&points](std::span<const double> row) {
+                      points.push_back({{row[0], row[1]}, {row[2], row[3]}});
+                    }));
   return points;
 }
 
@@ -147,24 +213,22 @@ Result<Calibration> calibrate_field(const std::vector<MeasuredPoint>& points, co
   grid = {request.columns, request.rows, -half, half, -half, half, {}};
   Fit fit(grid);
   for (const MeasuredPoint& point : points) {
-    add_point(fit, grid, point);
+    fit.add(nodes_round(grid, point.order), 1, error_of(point));
   }
   add_bending(fit, grid, request.smoothing);
-  const Eigen::MatrixXd errors = fit.solve();
-  for (Eigen::Index i = 0; i < errors.rows(); ++i) {
-    grid.errors.push_back({errors(i, 0), errors(i, 1)});
+  fit.solve();
+  for (std::size_t node = 0; node < request.columns * request.rows; ++node) {
+    grid.errors.push_back(fit.error(node));
   }
-  GRAVURE_CHECK(check_field_grid(grid));
-  double squares = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    GRAVURE_TRY(const GridPoint landing, grid.lands_at(points[i].order));
-    const double misfit_um =
-        std::hypot(landing.u_mm - points[i].landing.u_mm, landing.v_mm - points[i].landing.v_mm) * kUmPerMm;
-    squares += misfit_um * misfit_um;
-    if (misfit_um > calibration.max_um) {
-      calibration.max_um = misfit_um;
-      calibration.worst = i;
-    }
+  const double squares = see_misfits(points, fit, calibration);
+  const Result<void> sound = check_field_grid(grid);
+  if (!sound) {
+    const GridPoint& at = points[calibration.worst].order;
+    return Error{
+        sound.error().code,
+        fmt::format("calibrate: mark {} at U {} mm, V {} mm lies {:.4g} um from where the other marks say: look "
+                    "at it first. As they stand they make no field grid ({})",
+                    calibration.worst, at.u_mm, at.v_mm, calibration.worst_alone_um, sound.error().message)};
   }
   calibration.rms_um = std::sqrt(squares / static_cast<double>(points.size()));
   return calibration;

@@ -67,15 +67,52 @@ TEST(Calibrate, ReportsTheMarkThatFitsWorst) {
   EXPECT_LT(result.value().rms_um, 4);
 }
 
+/// A mark near a node pulls that node along; its neighbours are then as far off as itself.
+TEST(Calibrate, NamesTheMisreadMarkWhereTheGridFollowsIt) {
+  SCOPED_TRACE(gravure::test::Dice::note());
+  gravure::test::Dice dice;
+  for (int trial = 0; trial < 40; ++trial) {
+    std::vector<MeasuredPoint> points = plate(21, 20);
+    const auto wrong = static_cast<std::size_t>(dice.between(0, 440));
+    points[wrong].landing.v_mm += trial % 2 == 0 ? 0.3 : 1.0;
+    const auto result = calibrate_field(points, {40, 17, 17, 1e-4});
+    if (result) {
+      EXPECT_EQ(result.value().worst, wrong);
+      EXPECT_GT(result.value().worst_alone_um, 250);
+    } else {
+      EXPECT_NE(result.error().message.find("mark " + std::to_string(wrong) + " at"), std::string::npos)
+          << result.error().message;
+    }
+  }
+}
+
+/// By its definition: fitted again without the mark.
+TEST(Calibrate, SaysHowFarTheWorstMarkIsFromAGridWithoutIt) {
+  std::vector<MeasuredPoint> points = plate(9, 14);
+  points[31].landing.u_mm += 0.08;
+  const CalibrationRequest request{30, 9, 9, 1e-3};
+  const auto whole = calibrate_field(points, request);
+  ASSERT_TRUE(whole);
+  ASSERT_EQ(whole.value().worst, 31U);
+  const MeasuredPoint left_out = points[31];
+  points.erase(points.begin() + 31);
+  const auto others = calibrate_field(points, request);
+  ASSERT_TRUE(others);
+  const GridPoint there = others.value().grid.lands_at(left_out.order).value();
+  EXPECT_NEAR(whole.value().worst_alone_um,
+              1000 * std::hypot(there.u_mm - left_out.landing.u_mm, there.v_mm - left_out.landing.v_mm), 1e-6);
+}
+
 TEST(Calibrate, RefusesWhatGivesNoGrid) {
   const auto points = plate(5, 15);
   EXPECT_FALSE(calibrate_field(points, {0, 9, 9, 1e-4}));
   EXPECT_FALSE(calibrate_field(points, {30, 1, 9, 1e-4}));
   EXPECT_FALSE(calibrate_field(points, {30, 9, 34, 1e-4}));
   EXPECT_FALSE(calibrate_field(points, {30, 9, 9, 0}));
+  EXPECT_FALSE(calibrate_field(points, {30, 9, 9, 1e-13}));
   const auto outside = calibrate_field(points, {29, 9, 9, 1e-4});
   ASSERT_FALSE(outside);
-  EXPECT_NE(outside.error().message.find("point 1"), std::string::npos) << outside.error().message;
+  EXPECT_NE(outside.error().message.find("mark 0"), std::string::npos) << outside.error().message;
   EXPECT_FALSE(calibrate_field({points.begin(), points.begin() + 2}, {30, 9, 9, 1e-4}));
   const auto line = calibrate_field({points.begin(), points.begin() + 5}, {30, 9, 9, 1e-4});
   ASSERT_FALSE(line);
@@ -84,13 +121,24 @@ TEST(Calibrate, RefusesWhatGivesNoGrid) {
 }
 
 TEST(Calibrate, ReadsMeasuredPointsFromCsv) {
-  const auto points = parse_measured_points("u_order,v_order,u,v\n# plate 3\n-15,15,-15.01,15.02\n0;0;0.1;0\n");
+  const auto points = parse_measured_points(
+      "u_order_mm, v_order_mm,u_landing_mm,v_landing_mm\n# plate 3\n-15,15,-15.01,15.02\n0;0;0.1;0\n");
   ASSERT_TRUE(points) << points.error().message;
   ASSERT_EQ(points.value().size(), 2U);
   EXPECT_EQ(points.value()[0].landing.v_mm, 15.02);
   const auto refused = parse_measured_points("0,0,0,0\n1,2,3\n");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("line 2"), std::string::npos);
+}
+
+TEST(Calibrate, TakesNoHeadingWithOtherColumnsOrUnits) {
+  for (const char* heading : {"v_order_mm,u_order_mm,u_landing_mm,v_landing_mm",
+                              "u_order_um,v_order_um,u_landing_um,v_landing_um", "l0,-10,-10,10"}) {
+    const auto points = parse_measured_points(std::string(heading) + "\n0,0,0,0\n");
+    ASSERT_FALSE(points) << heading;
+    EXPECT_NE(points.error().message.find("line 1"), std::string::npos);
+    EXPECT_NE(points.error().message.find("the heading u_order_mm"), std::string::npos);
+  }
 }
 
 }  // namespace
