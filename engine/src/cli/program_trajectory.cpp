@@ -1,23 +1,6 @@
 #include "program_trajectory.hpp"
 
-#include <cstdlib>
-
 namespace gravure::cli {
-namespace {
-
-Result<void> check_counts(const std::string& path, const std::vector<std::int32_t>& stored,
-                          const std::vector<std::int32_t>& planned) {
-  for (std::size_t k = 0; k < stored.size(); ++k) {
-    if (std::abs(std::int64_t{stored[k]} - planned[k]) > 1) {
-      return Error{ErrorCode::bad_file, path + ": set-point " + std::to_string(k) + " is stored as " +
-                                            std::to_string(stored[k]) + " counts, its plan gives " +
-                                            std::to_string(planned[k]) + ": compile the job again"};
-    }
-  }
-  return {};
-}
-
-}  // namespace
 
 Result<ProgramTrajectory> open_trajectory(const std::string& path) {
   GRAVURE_TRY(std::unique_ptr<LineSource> program, open_grv(path));
@@ -28,10 +11,8 @@ Result<ProgramTrajectory> open_trajectory(const std::string& path) {
                                               "machine file, and compile it again"};
   }
   GRAVURE_TRY(scan::JobTrajectory trajectory, scan::JobTrajectory::make(header.plan));
-  const std::vector<LineSetPoints> planned = trajectory.stored_set_points();
-  for (std::size_t row = 0; row < header.set_points.size(); ++row) {
-    GRAVURE_CHECK(check_counts(path, header.set_points[row].u_counts, planned[row].u_counts));
-    GRAVURE_CHECK(check_counts(path, header.set_points[row].v_counts, planned[row].v_counts));
+  if (const Result<void> checked = trajectory.check_stored(header.set_points); !checked) {
+    return Error{checked.error().code, path + ": " + checked.error().message};
   }
   return ProgramTrajectory{std::move(program), std::move(trajectory)};
 }

@@ -140,6 +140,47 @@ std::vector<LineSetPoints> JobTrajectory::stored_set_points() const {
   return kinds;
 }
 
+namespace {
+
+Result<void> check_counts(const LineSetPoints& kind, const char* axis, const std::vector<std::int32_t>& stored,
+                          const std::vector<std::int32_t>& planned) {
+  const std::size_t count = std::min(stored.size(), planned.size());
+  const auto wrong =
+      std::mismatch(stored.begin(), stored.begin() + static_cast<std::ptrdiff_t>(count), planned.begin());
+  const auto k = static_cast<std::size_t>(wrong.first - stored.begin());
+  if (k == count && stored.size() == planned.size()) {
+    return {};
+  }
+  const std::string lines =
+      std::string(kind.reverse ? "reverse" : "forward") + " lines" + (kind.backwards ? " of the passes back" : "");
+  return Error{ErrorCode::bad_file, k == count
+                                        ? "the " + lines + " have " + std::to_string(stored.size()) +
+                                              " set-points, their plan gives " + std::to_string(planned.size()) +
+                                              ": compile the job again"
+                                        : "set-point " + std::to_string(k) + " of " + lines + " is stored as " + axis +
+                                              " = " + std::to_string(stored[k]) + " counts, its plan gives " +
+                                              std::to_string(planned[k]) + ": compile the job again"};
+}
+
+}  // namespace
+
+Result<void> JobTrajectory::check_stored(const std::vector<LineSetPoints>& stored) const {
+  if (stored.empty()) {
+    return {};
+  }
+  const std::vector<LineSetPoints> planned = stored_set_points();
+  if (stored.size() != planned.size()) {
+    return Error{ErrorCode::bad_file, "there are set-points of " + std::to_string(stored.size()) +
+                                          " kinds of lines, the plan has " + std::to_string(planned.size()) +
+                                          ": compile the job again"};
+  }
+  for (std::size_t row = 0; row < stored.size(); ++row) {
+    GRAVURE_CHECK(check_counts(planned[row], "U", stored[row].u_counts, planned[row].u_counts));
+    GRAVURE_CHECK(check_counts(planned[row], "V", stored[row].v_counts, planned[row].v_counts));
+  }
+  return {};
+}
+
 Result<FieldPoint> JobTrajectory::mirrors_at(std::int64_t ordinal, double slot, const LandingModel& model) const {
   const LineTrajectory& trajectory = of_revolution(number_of(ordinal).revolution);
   const LineTiming& timing = trajectory.path.timing();

@@ -82,8 +82,10 @@ Result<void> fill_budget(const Plan& plan, const ErrorBudgetRequest& request, Er
 void say_notes(const Plan& plan, const ErrorBudgetRequest& request, ErrorBudget& budget) {
   if (request.trajectory == nullptr) {
     budget.notes.emplace_back(
-        "error budget: the scanner is not described, so galvo_resolution, microvectors, cross_scan, lag and defocus "
-        "are not in it: give scanner.field_mm");
+        plan.scanner ? "error budget: the scanner has no path for these lines, so galvo_resolution, microvectors, "
+                       "cross_scan, lag and defocus are not in it"
+                     : "error budget: the scanner is not described, so galvo_resolution, microvectors, cross_scan, lag "
+                       "and defocus are not in it: give scanner.field_mm");
   }
   if (request.twin.run_out.enabled && plan.mode == Mode::flat) {
     budget.notes.emplace_back("error budget: nothing turns in a flat job, twin.run_out adds nothing");

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "figure.hpp"
-#include "gravure/scan/plan_trajectory.hpp"
 
 namespace gravure {
 namespace {
@@ -57,23 +56,32 @@ void judge_defocus(const ErrorBudget& budget, const Rational& limit_um, VerifyRe
 
 }  // namespace
 
-Result<void> judge_budget(const std::function<Result<std::unique_ptr<LineSource>>()>& programs, const Plan& plan,
-                          const VerifyOptions& options, VerifyReport& report) {
+std::optional<scan::JobTrajectory> judge_scanner(const ProgramHeader& header, VerifyReport& report) {
+  if (!header.plan.scanner) {
+    return std::nullopt;
+  }
+  Result<scan::JobTrajectory> made = scan::JobTrajectory::make(header.plan);
+  if (!made) {
+    report.violations.push_back("the scanner has no path for these lines: " + made.error().message);
+    return std::nullopt;
+  }
+  if (header.set_points.empty()) {
+    report.notes.emplace_back("the program stores no set-points: those of its plan are judged");
+  } else if (const Result<void> checked = made.value().check_stored(header.set_points); !checked) {
+    report.violations.push_back("the scanner's orders are not those of the plan: " + checked.error().message);
+  }
+  return std::move(made).value();
+}
+
+Result<void> judge_budget(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,
+                          const std::optional<scan::JobTrajectory>& trajectory, const VerifyOptions& options,
+                          VerifyReport& report) {
   const BudgetOptions& asked = *options.budget;
   ErrorBudgetRequest request;
   request.twin = asked.twin;
   request.threads = options.threads;
   request.cancel = options.cancel;
-  std::optional<scan::LineTrajectory> trajectory;
-  if (plan.scanner) {
-    Result<scan::LineTrajectory> made = scan::plan_trajectory(plan);
-    if (made) {
-      trajectory = std::move(made).value();
-      request.trajectory = &*trajectory;
-    } else {
-      report.notes.push_back("the scanner has no path for these lines: " + made.error().message);
-    }
-  }
+  request.trajectory = trajectory ? &trajectory->of_revolution(0) : nullptr;
   Result<ErrorBudget> budget = error_budget(programs, request);
   if (!budget && budget.error().code == ErrorCode::out_of_range) {
     report.violations.push_back("no error budget: " + budget.error().message);

@@ -378,8 +378,9 @@ Result<VerifyReport> verify(const std::function<Result<std::unique_ptr<LineSourc
   Verifier verifier(header, program->lines_per_chunk(), axes, devices, options);
   GRAVURE_TRY(const Tally tally, verifier.run(programs, images));
   VerifyReport report = judge(plan, axes, tally, static_cast<bool>(images));
+  const std::optional<scan::JobTrajectory> trajectory = judge_scanner(header, report);
   if (options.budget) {
-    GRAVURE_CHECK(judge_budget(programs, plan, options, report));
+    GRAVURE_CHECK(judge_budget(programs, trajectory, options, report));
   }
   return report;
 }

@@ -34,6 +34,7 @@ void prepare(SmallJob& small, const Shape& shape) {
   small.job.stage = {shape.lines, 8, 20, 4, 2'000'000, {}};
   if (shape.field_pixels > 0) {
     small.job.scanner.field_mm = ratio(8 * shape.field_pixels + 7, 1000);
+    small.job.scanner.bidirectional_offset_ticks = 0;  // pulses that are late lie beyond such a field
   }
   const std::int64_t tile_lines = shape.lines / shape.repeat.around;
   const std::int64_t tile_columns = shape.columns / shape.repeat.along;

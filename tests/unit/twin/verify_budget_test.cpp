@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "budget_support.hpp"
+#include "gravure/scan/job_trajectory.hpp"
 #include "twin_support.hpp"
 
 /// Landing errors from the job through plan, program and device to the report.
@@ -124,6 +125,53 @@ TEST(VerifyBudget, LimitsThatCannotBeJudgedAreNotKept) {
   expect_violation(blind, "limits.defocus_um cannot be judged: give scanner.field_mm");
   EXPECT_NE(all(blind.notes).find("give scanner.field_mm"), std::string::npos);
   EXPECT_TRUE(verified(small, {TwinSettings{}, {}, {}}).violations.empty());
+}
+
+TEST(VerifyBudget, OneSetPointThatIsNotThePlansIsAViolation) {
+  SmallJob small;
+  scanner_job(small);
+  compile_job(small, 3, LayerOrder::sequence);
+  const auto trajectory = scan::JobTrajectory::make(small.program.header.plan);
+  ASSERT_TRUE(trajectory) << trajectory.error().message;
+  const std::vector<LineSetPoints> planned = trajectory.value().stored_set_points();
+  ASSERT_EQ(planned.size(), 2U);
+  const auto violations_of = [&small](const std::vector<LineSetPoints>& stored) {
+    small.program.header.set_points = stored;
+    const Result<VerifyReport> report = verify_job(small, small.lines());
+    EXPECT_TRUE(report) << report.error().message;
+    return all(report.value().violations);
+  };
+  EXPECT_EQ(violations_of(planned), "");
+  EXPECT_EQ(violations_of({}), "") << "an older program";
+  for (const std::size_t row : {std::size_t{0}, std::size_t{1}}) {
+    for (const std::size_t k : {std::size_t{0}, planned[row].u_counts.size() - 1}) {
+      std::vector<LineSetPoints> stored = planned;
+      ++stored[row].v_counts[k];
+      EXPECT_EQ(violations_of(stored), "the scanner's orders are not those of the plan: set-point " +
+                                           std::to_string(k) + " of " + (row == 0 ? "forward" : "reverse") +
+                                           " lines is stored as V = " + std::to_string(stored[row].v_counts[k]) +
+                                           " counts, its plan gives " + std::to_string(planned[row].v_counts[k]) +
+                                           ": compile the job again\n");
+      stored = planned;
+      stored[row].u_counts[k] = 2147483647;
+      EXPECT_NE(violations_of(stored), "");
+      stored[row].u_counts = planned[row].u_counts;
+      stored[row].u_counts.pop_back();
+      EXPECT_NE(violations_of(stored), "") << "one is missing";
+    }
+  }
+  EXPECT_NE(violations_of({planned[0]}), "") << "a kind of line is missing";
+}
+
+TEST(VerifyBudget, LinesTheScannerCannotFollowAreAViolation) {
+  SmallJob small;
+  scanner_job(small);
+  small.job.scanner.turn_slots = 0;
+  compile_job(small, 3, LayerOrder::sequence);
+  const Result<VerifyReport> report = verify_job(small, small.lines(), {.budget = BudgetOptions{}});
+  ASSERT_TRUE(report) << report.error().message;
+  expect_violation(report.value(), "the scanner has no path for these lines: scan: ");
+  EXPECT_EQ(all(report.value().notes).find("give scanner.field_mm"), std::string::npos) << "it is given";
 }
 
 }  // namespace

@@ -50,6 +50,9 @@ class JobTrajectory {
   /// What a program stores: the set-points of each way that lines run, of a helical job those of lines that start on a
   /// whole column.
   std::vector<LineSetPoints> stored_set_points() const;
+  /// Are the set-points that a program stores those of this trajectory, each? Fails with bad_file, naming the first
+  /// that is not. None at all are: older programs have none.
+  Result<void> check_stored(const std::vector<LineSetPoints>& stored) const;
 
   const Plan& plan() const noexcept { return plan_; }
 
