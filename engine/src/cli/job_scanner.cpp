@@ -27,16 +27,6 @@ Error at_key(const Job& job, const Error& error) {
   return {error.code, job.place_of("scanner") + error.message};
 }
 
-bool has_limits(const ScannerPlan& scanner) {
-  return scanner.max_speed_mm_s || scanner.max_acceleration_mm_s2 || scanner.max_jerk_mm_s3;
-}
-
-/// Nothing that a trajectory would be asked for.
-bool says_only_its_field(const ScannerPlan& scanner) {
-  return !has_limits(scanner) && scanner.lag_us == 0 && scanner.offset_deg == 0 && scanner.tilt_deg_per_mm == 0 &&
-         scanner.field_grid.empty();
-}
-
 /// To 1e-9 of the unit: what is less depends on the compiler.
 Json figure(double value) {
   return std::round(value * 1e9) / 1e9 + 0.0;
@@ -87,18 +77,11 @@ Result<std::optional<scan::JobTrajectory>> check_trajectory(const Job& job, Plan
     return std::optional<scan::JobTrajectory>();
   }
   Result<scan::JobTrajectory> made = scan::JobTrajectory::make(plan);
-  if (!made && says_only_its_field(*plan.scanner)) {
-    plan.warnings.push_back("no set-points for the scanner: " + made.error().message);
-    return std::optional<scan::JobTrajectory>();
-  }
   if (!made) {
     return at_key(job, made.error());
   }
-  for (const std::string& warning : made.value().of_revolution(0).warnings) {
-    if (has_limits(*plan.scanner) || warning.find(": absent, ") == std::string::npos) {
-      plan.warnings.push_back(warning);
-    }
-  }
+  const std::vector<std::string>& warnings = made.value().of_revolution(0).warnings;
+  plan.warnings.insert(plan.warnings.end(), warnings.begin(), warnings.end());
   return std::optional(std::move(made).value());
 }
 

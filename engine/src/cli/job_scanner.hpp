@@ -13,9 +13,8 @@ namespace gravure::cli {
 /// Fills in what the job leaves to its files: the text of the field grid.
 Result<void> read_scanner_files(Job& job);
 
-/// The trajectories of a plan's lines, where there is a scanner. Its warnings go to the plan's; that limits are absent
-/// is worth one only where others are given. Where the job says no more of the scanner than its field, what cannot be
-/// planned is a warning as well: such jobs ask for no trajectory.
+/// The trajectories of a plan's lines, where there is a scanner. Its warnings go to the plan's. Fails, with the place
+/// of the key, where the scanner cannot follow the lines.
 Result<std::optional<scan::JobTrajectory>> check_trajectory(const Job& job, Plan& plan);
 
 /// What `plan` prints of it: rows of text, and what stands under scanner.trajectory.
