@@ -1,0 +1,110 @@
+#include "gravure/texture/split.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace gravure::texture {
+namespace {
+
+constexpr double kFirstSigma_mm = 30;
+constexpr double kNextSigma = 0.95;
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+bool within(const DeviationSummary& most, const DeviationLimits& limits) {
+  return most.max_focus_mm <= limits.focus_mm && most.max_incidence_rad <= limits.incidence_rad &&
+         most.max_displacement_mm <= limits.displacement_mm;
+}
+
+/// Every sixteenth point: where these are beyond a limit already, the others need no look.
+class Sample {
+ public:
+  explicit Sample(const std::vector<SurfacePoint>& targets) {
+    for (std::size_t i = 0; i < targets.size(); i += kStride) {
+      targets_.push_back(targets[i]);
+    }
+    stages_.resize(targets_.size());
+  }
+  Result<DeviationSummary> look(const Surface& surface, const std::vector<Vector2>& slow) {
+    std::vector<Vector2> some;
+    for (std::size_t i = 0; i < slow.size(); i += kStride) {
+      some.push_back(slow[i]);
+    }
+    GRAVURE_CHECK(surface.project(some, stages_));
+    return summarise(targets_, stages_);
+  }
+
+ private:
+  static constexpr std::size_t kStride = 16;
+  std::vector<SurfacePoint> targets_;
+  std::vector<SurfacePoint> stages_;
+};
+
+}  // namespace
+
+Result<Split> split_path(const Surface& surface, const TexturePath& path, const GaussianFilter& filter) {
+  Split split;
+  split.sigma_mm = filter.sigma_mm;
+  GRAVURE_TRY(const std::vector<Vector2> slow, slow_part(path.points_mm, path.step_mm, filter));
+  split.targets.resize(path.points_mm.size());
+  split.stages.resize(slow.size());
+  GRAVURE_CHECK(surface.project(path.points_mm, split.targets));
+  GRAVURE_CHECK(surface.project(slow, split.stages));
+  split.most = summarise(split.targets, split.stages);
+  return split;
+}
+
+Result<Split> split_by_published_rule(const Surface& surface, const TexturePath& path, const DeviationLimits& limits,
+                                      GaussianFilter filter, const CancelToken& cancel) {
+  Split split;
+  split.targets.resize(path.points_mm.size());
+  split.stages.resize(path.points_mm.size());
+  GRAVURE_CHECK(surface.project(path.points_mm, split.targets));
+  Sample sample(split.targets);
+  split.tries = 0;
+  for (filter.sigma_mm = kFirstSigma_mm; filter.sigma_mm >= path.step_mm; filter.sigma_mm *= kNextSigma) {
+    if (cancel.cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped while sigma was sought"};
+    }
+    ++split.tries;
+    split.sigma_mm = filter.sigma_mm;
+    GRAVURE_TRY(const std::vector<Vector2> slow, slow_part(path.points_mm, path.step_mm, filter));
+    GRAVURE_TRY(split.most, sample.look(surface, slow));
+    if (!within(split.most, limits)) {
+      continue;
+    }
+    GRAVURE_CHECK(surface.project(slow, split.stages));
+    split.most = summarise(split.targets, split.stages);
+    if (within(split.most, limits)) {
+      return split;
+    }
+  }
+  std::string broken;
+  for (const std::string& each : violations(split.most, limits)) {
+    broken += (broken.empty() ? "" : ", ") + each;
+  }
+  return Error{
+      ErrorCode::out_of_range,
+      fmt::format("no sigma from {} um down to the step of the path, {} um, meets the limits; the last one leaves "
+                  "{}: widen them, or take a smoother surface or a finer path",
+                  kFirstSigma_mm * 1000, path.step_mm * 1000, broken)};
+}
+
+std::vector<std::string> violations(const DeviationSummary& most, const DeviationLimits& limits) {
+  std::vector<std::string> found;
+  if (most.max_focus_mm > limits.focus_mm) {
+    found.push_back(
+        fmt::format("focus offset {:.6g} um, allowed {:.6g} um", most.max_focus_mm * 1000, limits.focus_mm * 1000));
+  }
+  if (most.max_incidence_rad > limits.incidence_rad) {
+    found.push_back(fmt::format("incidence {:.6g} deg, allowed {:.6g} deg", most.max_incidence_rad * kDegrees,
+                                limits.incidence_rad * kDegrees));
+  }
+  if (most.max_displacement_mm > limits.displacement_mm) {
+    found.push_back(
+        fmt::format("displacement {:.6g} mm, allowed {:.6g} mm", most.max_displacement_mm, limits.displacement_mm));
+  }
+  return found;
+}
+
+}  // namespace gravure::texture
