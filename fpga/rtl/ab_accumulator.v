@@ -1,10 +1,13 @@
 // A-B accumulator: the counter of an A-B channel at the FPGA clock, and its two pins.
 //
 // The BITS wide counter adds step + carry on every FPGA clock that is due; its two leading bits, Gray coded, are A and B.
+// Words that go with `back` exchange the pins, so that their edges run the other way; where A and B differ when the way
+// turns, both are inverted, too, which keeps them as they are: to turn makes no edge and loses none.
 // To close at two FPGA clocks a seed clock it adds in segments of SEGMENT bits, each one clock behind the one below it,
 // without feedback: only what is added passes from segment to segment.
 //
-// due, carry, step  from flip-flops of the seed clock (ab_pacer); bit 0 is for the first of its two FPGA clocks
+// due, carry, step, back  from flip-flops of the seed clock (ab_pacer); bit 0 is for the first of its two
+//                   FPGA clocks
 // beat              turns over with every seed clock; tells the first FPGA clock from the second
 // clear             sets the counter to 0
 //
@@ -21,6 +24,7 @@ module ab_accumulator #(
     input wire [1:0] due,
     input wire [1:0] carry,
     input wire [BITS-1:0] step,
+    input wire back,
     output reg a,
     output reg b
 );
@@ -69,9 +73,16 @@ module ab_accumulator #(
     end
   endgenerate
 
+  // The way of what the leading segment adds next, and of what it has added.
+  reg [SEGMENTS:0] backs;  // that of step_now on top
+  reg turned, inverted;
   always @(posedge clk) begin
-    a <= !clear_now && quarter[1];
-    b <= !clear_now && (quarter[1] ^ quarter[0]);
+    backs[SEGMENTS] <= back;
+    backs[SEGMENTS-1:0] <= clear_now ? {SEGMENTS{1'b0}} : backs[SEGMENTS:1];
+    turned <= !clear_now && backs[0];
+    inverted <= !clear_now && (inverted ^ ((backs[0] ^ turned) && quarter[0]));
+    a <= !clear_now && (quarter[1] ^ (turned && quarter[0]) ^ inverted);
+    b <= !clear_now && (quarter[1] ^ (!turned && quarter[0]) ^ inverted);
   end
 `ifdef FORMAL
   // A plain counter, and how the segments follow it. The word of every clock keeps the promise of ab_pacer.
@@ -81,6 +92,11 @@ module ab_accumulator #(
   reg [SEGMENTS-1:0] past_overflow[0:SEGMENTS-1];  // out of the segments below s, for that count
   reg [1:0] past_quarter;
   reg past_clear = 1'b1, past_a, past_b, valid = 1'b0;
+  // Quarter turns up and down; and whether all words since the last clear went one way.
+  reg [SEGMENTS-1:0] past_back;  // as past_add
+  reg [1:0] ref_turn, past_turn;
+  reg all_forward, all_back, past_forward, past_backward;
+  wire [1:0] moved = past_count[SEGMENTS-2][BITS-1:BITS-2] - ref_quarter;
   localparam [BITS-1:0] QUARTER = {2'b01, {(BITS - 2) {1'b0}}};
   wire [SEGMENTS-1:0] next_overflow;
   wire [1:0] ref_quarter = past_count[SEGMENTS-1][BITS-1:BITS-2];
@@ -96,6 +112,13 @@ module ab_accumulator #(
     past_add[0] <= due_now ? step_now : {BITS{1'b0}};
     past_count[0] <= past_count[0] + past_add[0] + {{(BITS - 1) {1'b0}}, carry_in};
     past_carry[1] <= carry_in;
+    past_back <= {past_back[SEGMENTS-2:0], backs[SEGMENTS]};
+    ref_turn <= past_back[SEGMENTS-1] ? ref_turn - moved : ref_turn + moved;
+    past_turn <= ref_turn;
+    all_forward <= all_forward && !past_back[SEGMENTS-1];
+    all_back <= all_back && past_back[SEGMENTS-1];
+    past_forward <= all_forward;
+    past_backward <= all_back;
     past_overflow[0] <= next_overflow;
     for (i = 1; i < SEGMENTS; i = i + 1) begin
       past_add[i] <= past_add[i-1];
@@ -110,6 +133,10 @@ module ab_accumulator #(
         past_overflow[i] <= 0;
         past_carry[i] <= 1'b0;
       end
+      past_back <= 0;
+      ref_turn <= 2'd0;
+      all_forward <= 1'b1;
+      all_back <= 1'b1;
     end
   end
   genvar w;
@@ -145,8 +172,14 @@ module ab_accumulator #(
   always @(*) if (valid) begin
     assert (past_add[0] <= QUARTER && !(carry_in && past_add[0] == QUARTER));
     assert (quarter == ref_quarter);  // skewed and plain are the same counter, SEGMENTS - 1 clocks apart
+    for (i = 0; i < SEGMENTS; i = i + 1) assert (backs[SEGMENTS-1-i] == past_back[i]);
+    assert ({ref_turn[1], ref_turn[1] ^ ref_turn[0]} == ({2{quarter[1] ^ inverted}} ^ (turned ? {quarter[0], 1'b0} : {1'b0, quarter[0]})));
+    if (all_forward) assert (!turned && !inverted);
+    if (all_back) assert (!inverted && (turned || quarter == 2'd0));
     if (!past_clear) begin
-      assert (a == past_quarter[1] && b == (past_quarter[1] ^ past_quarter[0]));
+      assert (a == past_turn[1] && b == (past_turn[1] ^ past_turn[0]));
+      if (past_forward) assert (a == past_quarter[1] && b == (past_quarter[1] ^ past_quarter[0]));
+      if (past_backward) assert (b == past_quarter[1] && a == (past_quarter[1] ^ past_quarter[0]));  // exchanged
       assert (!((a != past_a) && (b != past_b)));  // A and B never move together
     end
   end

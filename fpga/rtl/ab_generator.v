@@ -6,7 +6,8 @@
 //
 // Latency in FPGA clocks, with S = BITS / SEGMENT: what is known of the counter just after clock c of a load shows on the
 // pins c + 2 LOAD_CLOCKS + WORD_STAGES + S - 1 clocks after the load; enable acts 2 DUE_LATENCY + WORD_STAGES + S clocks
-// later, a new increment 2 STEP_LATENCY + WORD_STAGES + S. The pins are flip-flops. Reset (one clk or longer): all 0, standing.
+// later, a new increment 2 STEP_LATENCY + WORD_STAGES + S. The pins are flip-flops. Reset (one clk or longer): all 0, standing,
+// forward. `backward` is taken by a load, which keeps the counter: from its first word on the edges run the other way.
 `default_nettype none
 module ab_generator #(
     parameter BITS = 32,
@@ -20,6 +21,7 @@ module ab_generator #(
     input wire rst,
     input wire enable,
     input wire load,
+    input wire backward,
     input wire load_increment,
     input wire [BITS-1:0] increment,
     input wire [PRESCALER_BITS-1:0] prescaler,
@@ -32,12 +34,13 @@ module ab_generator #(
 );
   wire [1:0] due, carry;
   wire [BITS-1:0] step;
+  wire back;
   ab_pacer #(
       .BITS(BITS), .PRESCALER_BITS(PRESCALER_BITS), .FRACTION_BITS(FRACTION_BITS), .FRACTION(FRACTION)
   ) pacer (
-      .clk(clk), .rst(rst), .enable(enable), .load(load), .load_increment(load_increment), .increment(increment),
-      .prescaler(prescaler), .fraction_num(fraction_num), .fraction_den(fraction_den), .due(due), .carry(carry),
-      .step(step), .refused(refused), .busy(busy)
+      .clk(clk), .rst(rst), .enable(enable), .load(load), .backward(backward), .load_increment(load_increment),
+      .increment(increment), .prescaler(prescaler), .fraction_num(fraction_num), .fraction_den(fraction_den), .due(due),
+      .carry(carry), .step(step), .back(back), .refused(refused), .busy(busy)
   );
 
   reg beat, clear;
@@ -47,7 +50,8 @@ module ab_generator #(
   end
 
   ab_accumulator #(.BITS(BITS), .SEGMENT(SEGMENT)) accumulator (
-      .clk(clk_fast), .clear(clear), .beat(beat), .due(due), .carry(carry), .step(step), .a(a), .b(b)
+      .clk(clk_fast), .clear(clear), .beat(beat), .due(due), .carry(carry), .step(step), .back(back), .a(a),
+      .b(b)
   );
 endmodule
 `default_nettype wire

@@ -9,10 +9,11 @@
 // enable          low: everything stands
 // load            takes all registers, LOAD_CLOCKS seed clocks later; starts a new count with acc = 0
 // load_increment  takes the increment alone, without a gap
+// backward        the way the edges shall run; taken by a load alone
 // busy            a load is under way; a load or load_increment now is refused
 // refused         sticky until a load is taken or reset: a load that would move A and B together, or whose fraction is
 //                 no proper one (or any, with FRACTION 0), or with prescaler 0, changes nothing
-// due, carry      bit 0 the first FPGA clock, bit 1 the second; with them goes `step`, the increment
+// due, carry      bit 0 the first FPGA clock, bit 1 the second; with them go `step`, the increment, and `back`
 //
 // Latency in seed clocks, from the one that takes an input to the one after which the output shows: enable to due
 // DUE_LATENCY, load to the due of its clock 1 LOAD_CLOCKS, load_increment to step STEP_LATENCY. Reset: standing, increment 0.
@@ -27,6 +28,7 @@ module ab_pacer #(
     input wire rst,
     input wire enable,
     input wire load,
+    input wire backward,
     input wire load_increment,
     input wire [BITS-1:0] increment,
     input wire [PRESCALER_BITS-1:0] prescaler,
@@ -35,6 +37,7 @@ module ab_pacer #(
     output reg [1:0] due,
     output reg [1:0] carry,
     output reg [BITS-1:0] step,
+    output reg back,
     output reg refused,
     output wire busy
 );
@@ -52,7 +55,7 @@ module ab_pacer #(
   reg [BITS-1:0] new_step;
   reg [P-1:0] new_period;
   reg [F-1:0] new_num;
-  reg new_over, new_quarter, new_zero, new_one;
+  reg new_back, new_over, new_quarter, new_zero, new_one;
   reg [P-1:0] new_period_less;
   reg new_ok;
   wire any_low = increment[BITS-3:0] != 0;  // compared bit by bit with 2^(BITS-2): no long carry chain
@@ -89,6 +92,7 @@ module ab_pacer #(
       due <= 2'd0;
       carry <= 2'd0;
       step <= 0;
+      back <= 1'b0;
       has_fraction <= 1'b0;
       word_fraction <= 1'b0;
       next_step_ok <= 1'b0;
@@ -118,6 +122,7 @@ module ab_pacer #(
                        (busy && (load || load_increment));
       if (loading[LOAD_CLOCKS-1]) begin
         step <= new_step;
+        back <= new_back;
         has_fraction <= !fraction_off;
       end else if (next_step_ok) step <= new_step;
       if (loading[LOAD_CLOCKS-2]) word_fraction <= !fraction_off;
@@ -127,6 +132,7 @@ module ab_pacer #(
     end
     if (!busy) new_step <= increment;  // a new increment alone waits for one clock here, too
     if (load && !busy) begin
+      new_back <= backward;
       new_period <= prescaler;
       new_num <= fraction_num;
       new_over <= over;
@@ -222,9 +228,13 @@ module ab_pacer #(
   reg [3:0] ref_word[0:DUE_LATENCY];  // what the output shows that many clocks later
   integer stage;
   reg valid = 1'b0;
+  reg asked_back, past_back, past_taken;
   initial assume (rst);
   always @(posedge clk) begin
     valid <= 1'b1;
+    if (load && !busy) asked_back <= backward;
+    past_back <= back && !rst;
+    past_taken <= loading[LOAD_CLOCKS-1] && !rst;
     ref_word[0] <= {ref_carry_1, ref_carry_0, ref_due_1, ref_due_0};
     for (stage = 1; stage <= DUE_LATENCY; stage = stage + 1) ref_word[stage] <= ref_word[stage-1];
     if (rst) begin
@@ -249,6 +259,8 @@ module ab_pacer #(
     assert (step <= QUARTER);
     if (carry != 0) assert (step < QUARTER);  // so that A and B never move together
     assert ((carry & ~due) == 0);
+    assert (back == (past_taken ? asked_back : past_back));  // as asked for by the last load that was not refused
+    if (busy) assert (new_back == asked_back);
     // What makes that inductive: a load is checked before it is in force, and no fraction is added without one.
     assert ((loading & (loading - 1'b1)) == 0);
     if (busy) assert (new_over == (new_step > QUARTER) && new_quarter == (new_step == QUARTER));

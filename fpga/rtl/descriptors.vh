@@ -1,6 +1,6 @@
 // Made by fpga/regs/generate.py from blocks.txt; change that file.
-6'd0: word <= 32'h01020020;  // A-B generator, axis 0: 32 counter bits
-6'd1: word <= 32'h01020020;  // A-B generator, axis 1: 32 counter bits
+6'd0: word <= 32'h01030020;  // A-B generator, axis 0: 32 counter bits
+6'd1: word <= 32'h01030020;  // A-B generator, axis 1: 32 counter bits
 6'd2: word <= 32'h02010022;  // fraction of axis 0: 34 bits
 6'd3: word <= 32'h03020100;  // increment schedule, axis 0: 256 segments
 6'd4: word <= 32'h03020100;  // increment schedule, axis 1: 256 segments

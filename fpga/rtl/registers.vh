@@ -2,7 +2,7 @@
 localparam [7:0] ADDRESS_MAGIC = 8'h00;
 localparam [31:0] RESET_MAGIC = 32'h47524156;
 localparam [7:0] ADDRESS_VERSION = 8'h01;
-localparam [31:0] RESET_VERSION = 32'h3;
+localparam [31:0] RESET_VERSION = 32'h4;
 localparam [7:0] ADDRESS_COUNTER_BITS = 8'h02;
 localparam [7:0] RESET_COUNTER_BITS = 8'h20;
 localparam [7:0] ADDRESS_FIFO_BITS = 8'h03;
@@ -10,7 +10,7 @@ localparam [7:0] RESET_FIFO_BITS = 8'hc;
 localparam [7:0] ADDRESS_CLOCK_MULTIPLIER = 8'h04;
 localparam [7:0] RESET_CLOCK_MULTIPLIER = 8'h2;
 localparam [7:0] ADDRESS_CONTROL = 8'h10;
-localparam [6:0] RESET_CONTROL = 7'h0;
+localparam [8:0] RESET_CONTROL = 9'h0;
 localparam [7:0] ADDRESS_COMMAND = 8'h11;
 localparam [9:0] RESET_COMMAND = 10'h0;
 localparam [7:0] ADDRESS_STATUS = 8'h12;
@@ -78,8 +78,8 @@ function [31:0] unused_bits(input [7:0] at);
              at == ADDRESS_FRACTION_DEN + 8'd1 ||
              at == ADDRESS_FRACTION_NUM_1 + 8'd1 ||
              at == ADDRESS_FRACTION_DEN_1 + 8'd1}} & 32'hfffffffc
-      | {32{at == ADDRESS_CONTROL}} & 32'hffffff80
       | {32{at == ADDRESS_CORRECTION_LIMIT}} & 32'hffffff00
+      | {32{at == ADDRESS_CONTROL}} & 32'hfffffe00
       | {32{at == ADDRESS_COMMAND}} & 32'hfffffc00
       | {32{at == ADDRESS_SEEDS_PER_SLOT ||
              at == ADDRESS_REVERSE_DELAY ||

@@ -17,7 +17,7 @@ module settings (
     input wire write,
     input wire [7:0] address,
     input wire [31:0] write_data,
-    output reg [6:0] control,
+    output reg [8:0] control,
     output reg [9:0] command,
     output reg [31:0] increment,
     output reg [31:0] prescaler,
@@ -115,7 +115,7 @@ module settings (
       else if (young != 0) young <= young - 3'd1;
       if (accept) begin
         case (store_address)
-          ADDRESS_CONTROL: if (!bad_start) control <= store_data[6:0];
+          ADDRESS_CONTROL: if (!bad_start) control <= store_data[8:0];
           ADDRESS_COMMAND: command <= store_data[9:0];
           ADDRESS_INCREMENT: increment <= store_data;
           ADDRESS_PRESCALER: prescaler <= store_data;

@@ -37,7 +37,7 @@ module synchro #(
     output wire scan,
     output wire [2:0] fault
 );
-  wire [6:0] control;
+  wire [8:0] control;
   wire [9:0] command;
   wire run = control[0];
   wire acknowledge = command[0];
@@ -83,13 +83,13 @@ module synchro #(
       .increment(scheduled_increment_1), .busy(schedule_busy[1]), .full(), .overflow(schedule_overflow[1])
   );
   ab_generator axis (
-      .clk(clk), .clk_fast(clk_fast), .rst(rst), .enable(control[1]), .load(command[1]),
+      .clk(clk), .clk_fast(clk_fast), .rst(rst), .enable(control[1]), .load(command[1]), .backward(control[7]),
       .load_increment(command[2] || scheduled[0]), .increment(scheduled[0] ? scheduled_increment : increment),
       .prescaler(prescaler), .fraction_num(fraction_num), .fraction_den(fraction_den), .a(a), .b(b),
       .refused(ab_refused[0]), .busy()
   );
   ab_generator #(.FRACTION(FRACTION_1)) axis_1 (
-      .clk(clk), .clk_fast(clk_fast), .rst(rst), .enable(control[3]), .load(command[4]),
+      .clk(clk), .clk_fast(clk_fast), .rst(rst), .enable(control[3]), .load(command[4]), .backward(control[8]),
       .load_increment(command[5] || scheduled[1]), .increment(scheduled[1] ? scheduled_increment_1 : increment_1),
       .prescaler(prescaler_1), .fraction_num(fraction_num_1), .fraction_den(fraction_den_1), .a(a_1), .b(b_1),
       .refused(ab_refused[1]), .busy()

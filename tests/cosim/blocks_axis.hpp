@@ -19,6 +19,7 @@ struct AbPacerPorts {
     visit("rst", in.rst);
     visit("enable", in.enable);
     visit("load", in.load);
+    visit("backward", in.backward);
     visit("load_increment", in.load_increment);
     visit("increment", in.increment, kBits);
     visit("prescaler", in.prescaler, kPrescalerBits);
@@ -30,6 +31,7 @@ struct AbPacerPorts {
     visit("due", out.due, 2);
     visit("carry", out.carry, 2);
     visit("step", out.step, kBits);
+    visit("back", out.back);
     visit("refused", out.refused);
     visit("busy", out.busy);
   }
@@ -46,6 +48,7 @@ struct AbAccumulatorPorts {
     visit("due", in.due, 2);
     visit("carry", in.carry, 2);
     visit("step", in.step, kBits);
+    visit("back", in.back);
   }
   template <class Out, class Visitor>
   static void out(Out& out, Visitor&& visit) {

@@ -98,7 +98,7 @@ struct SettingsPorts {
   }
   template <class Out, class Visitor>
   static void out(Out& out, Visitor&& visit) {
-    visit("control", out.control, 7);
+    visit("control", out.control, 9);
     visit("command", out.command, 10);
     visit("increment", out.increment, 32);
     visit("prescaler", out.prescaler, 32);

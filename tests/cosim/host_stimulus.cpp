@@ -84,6 +84,12 @@ void HostStimulus::send(Dice& dice, FrameMaker::Damage damage) {
   ++lines_sent_;
 }
 
+/// The ways of both axes are thrown with each write; only a load takes them.
+void HostStimulus::set_control(Dice& dice, std::uint64_t bits) {
+  control_ = bits;
+  write(fpga::kControlRegister, bits | (dice.word() & 384U));
+}
+
 void HostStimulus::set_up_axes(Dice& dice) {
   const std::uint64_t den = 1 + (dice.word() & 0x3'FFFF'FFFEU);
   write(fpga::kIncrementRegister, dice.one_in(8) ? dice.word() : dice.word() % (1U << 30U));
@@ -109,7 +115,7 @@ void HostStimulus::set_up(Dice& dice) {
   const std::uint64_t seeds = wide ? 12 + dice.word() % 8 : dice.one_in(4) ? 1 + dice.word() % 2 : 2 + dice.word() % 5;
   const std::uint64_t lines = 1 + dice.word() % 4;
   const std::uint64_t delay = dice.one_in(30) ? seeds : dice.word() % (wide ? 4 : seeds);
-  write(fpga::kControlRegister, 0);
+  set_control(dice, 0);
   set_up_axes(dice);
   write(fpga::kSeedsPerSlotRegister, seeds);
   write(fpga::kSlotsPerLineRegister, slots);
@@ -137,7 +143,7 @@ void HostStimulus::set_up(Dice& dice) {
   send(dice, FrameMaker::Damage::none);
   send(dice, FrameMaker::Damage::none);
   const std::uint64_t timed = dice.one_in(3) ? 16 : 0;
-  write(fpga::kControlRegister, (dice.one_in(3) ? 15 : 11) + timed + (dice.word() & 32U) + (dice.one_in(3) ? 0 : 64));
+  set_control(dice, (dice.one_in(3) ? 15 : 11) + timed + (dice.word() & 32U) + (dice.one_in(3) ? 0 : 64));
   write(fpga::kCommandRegister, timed != 0 || dice.one_in(2) ? 64 : 0);
   actions_.push_back({Action::Kind::start});
   ready_ = true;
@@ -151,6 +157,9 @@ void HostStimulus::feed(Dice& dice) {
     write(fpga::kIncrementRegister, dice.word() % (1U << 30U));
     write(fpga::kIncrement1Register, dice.word() % (1U << 30U));
     write(fpga::kCommandRegister, 4 + (dice.word() & 32U));
+  } else if (dice.one_in(300)) {
+    set_control(dice, control_);
+    write(fpga::kCommandRegister, dice.word() & 18U);
   } else if (dice.one_in(2000)) {
     write(fpga::kSlotsPerLineRegister, 7);  // refused while lines run
   } else {

@@ -38,6 +38,7 @@ class HostStimulus {
   void set_up(Dice& dice);
   void set_up_axes(Dice& dice);
   void feed(Dice& dice);
+  void set_control(Dice& dice, std::uint64_t bits);
   void write(const fpga::Register& target, std::uint64_t data);
   void send(Dice& dice, FrameMaker::Damage damage);
 
@@ -50,6 +51,7 @@ class HostStimulus {
   std::uint64_t turn_ticks_ = 1;
   std::uint64_t next_index_ = 0;
   std::uint64_t lines_sent_ = 0;
+  std::uint64_t control_ = 0;  ///< without the ways of the axes
   bool ready_ = false;
   bool held_ = false;
 };

@@ -25,6 +25,7 @@ void AbPacer::words(const Inputs& in) noexcept {
   const bool taken = in.load_increment && !in.load && !out_.busy;
   if (loading(7)) {
     out_.step = load_.step;
+    out_.back = load_.back;
     has_fraction_ = !load_.num_zero;
   } else if (next_step_ok_) {
     out_.step = next_step_;
@@ -99,6 +100,7 @@ void AbPacer::check_load(const Inputs& in) noexcept {
   const bool taken = in.load && !out_.busy;
   if (taken) {
     l.step = in.increment & count_mask_;
+    l.back = in.backward;
     l.over = over(l.step);
     l.quarter = l.step == quarter_;
     l.period = in.prescaler & prescaler_mask_;

@@ -24,6 +24,8 @@ AxisTrack::AxisTrack(const AbGenerator& generator, const AbGenerator::Widths& wi
   accumulator_ = pacer.x_ >= pacer.num_ ? pacer.x_ - pacer.num_ : pacer.x_ + den_ - pacer.num_;
   count_ = front_.accumulator_.count_;
   quarter_ = count_ >> front_.accumulator_.quarter_shift_;
+  turn_ = front_.accumulator_.turns_ & 3U;
+  back_ = pacer.out_.back;
   per_step_ = static_cast<Uint128>(pacer.out_.step) * den_ + pacer.num_;
   per_edge_ = (static_cast<Uint128>(1) << front_.accumulator_.quarter_shift_) * den_;
   if (!enable || per_step_ == 0) {
@@ -48,7 +50,8 @@ AbPins AxisTrack::take() noexcept {
   const bool longer = over_ < rest_;
   over_ = longer ? over_ + per_step_ - rest_ : over_ - rest_;
   advance(longer ? gap_ + 1 : gap_);
-  return pins_of_quarter(++quarter_);
+  turn_ = turned(turn_, 1);
+  return pins_of_quarter(turn_);
 }
 
 AbGenerator AxisTrack::at(std::uint64_t clock) const noexcept {
@@ -63,7 +66,9 @@ AbGenerator AxisTrack::at(std::uint64_t clock) const noexcept {
     const auto carries = static_cast<std::uint64_t>(sum / den_);
     pacer.x_ = static_cast<std::uint64_t>((static_cast<Uint128>(accumulator) + pacer.num_) % den_);
     pacer.y_ = static_cast<std::uint64_t>((static_cast<Uint128>(pacer.x_) + pacer.num_) % den_);
-    generator.accumulator_.count_ = (count_ + steps * pacer.out_.step + carries) & generator.accumulator_.mask_;
+    AbAccumulator& counter = generator.accumulator_;
+    counter.count_ = (count_ + steps * pacer.out_.step + carries) & counter.mask_;
+    counter.turns_ = turned(front_.accumulator_.turns_, (counter.count_ >> counter.quarter_shift_) - quarter_);
   }
   hold(generator, enable_);
   return generator;

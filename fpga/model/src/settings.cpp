@@ -47,7 +47,7 @@ void Settings::take(std::uint8_t address, std::uint32_t data) noexcept {
   const std::uint64_t wide = (std::uint64_t{data & 3U} << 32U) | low_word_;
   switch (address) {
     case kControlRegister.address:
-      out_.control = data & 0x7FU;
+      out_.control = data & 0x1FFU;
       break;
     case kCommandRegister.address:
       out_.command = data & 0x3FFU;

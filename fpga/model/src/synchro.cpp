@@ -6,14 +6,16 @@ namespace gravure::fpga {
 namespace {
 
 /// Bits of the control register.
-enum Control : std::uint8_t {
+enum Control : std::uint16_t {
   kRun = 1,
   kEnable0 = 2,
   kWatch = 4,
   kEnable1 = 8,
   kTimed = 16,
   kBackward = 32,
-  kReference = 64
+  kReference = 64,
+  kBackward0 = 128,
+  kBackward1 = 256
 };
 
 /// Bits of the command register.
@@ -57,6 +59,7 @@ AbGenerator::Inputs Synchro::axis_inputs(std::size_t axis, bool rst) const noexc
   return {.rst = rst,
           .enable = has(s, one ? kEnable1 : kEnable0),
           .load = has(s, one ? kLoad1 : kLoad0),
+          .backward = has(s, one ? kBackward1 : kBackward0),
           .load_increment = has(s, one ? kIncrement1 : kIncrement0) || schedule.load_increment,
           .increment = schedule.load_increment ? schedule.increment : increment,
           .prescaler = one ? s.prescaler_1 : s.prescaler,

@@ -27,11 +27,12 @@ AbGenerator::Widths widths_of(const AbRegisters& registers) {
 
 /// A generator that counts: its load was on FPGA clock 0, the clocks since then are `steps`.
 struct Running {
-  explicit Running(const AbRegisters& registers)
+  explicit Running(const AbRegisters& registers, bool backward = false)
       : widths(widths_of(registers)), inputs(inputs_of(registers)), generator(widths) {
     generator.step({.rst = true});
     generator.step({.rst = true});
     inputs.load = true;
+    inputs.backward = backward;
     generator.step(inputs);
     inputs.load = false;
   }
@@ -58,6 +59,66 @@ TEST(AbGenerator, ShowsTheCounterItsLoadLatencyLater) {
     }
     for (int clock = 1; clock <= 2000; ++clock) {
       ASSERT_TRUE(running.step() == counter->step()) << "clock " << clock << " of trial " << trial;
+    }
+  }
+}
+
+TEST(AbGenerator, ExchangesThePinsWhenLoadedBackward) {
+  const std::uint64_t seed = random_seed();
+  SCOPED_TRACE(testing::Message() << "rerun with GRAVURE_TEST_SEED=" << seed);
+  Words words(seed);
+  for (int trial = 0; trial < 500; ++trial) {
+    const AbRegisters registers = random_registers(words);
+    Running forward(registers);
+    Running backward(registers, true);
+    for (int clock = 1; clock <= 2000; ++clock) {
+      const AbPins pins = forward.step();
+      backward.inputs.backward = words.below(2) == 0;  // means nothing between loads
+      ASSERT_TRUE((backward.step() == AbPins{.a = pins.b, .b = pins.a})) << "clock " << clock << " of trial " << trial;
+    }
+  }
+}
+
+/// Quarter turns from one pair of pins to the next, 2 where both change.
+int moved(AbPins from, AbPins to) {
+  const auto quarter = [](AbPins pins) { return pins.a ? (pins.b ? 2 : 3) : pins.b ? 1 : 0; };
+  const int quarters = (quarter(to) - quarter(from)) & 3;
+  return quarters == 3 ? -1 : quarters;
+}
+
+TEST(AbGenerator, TurnsWithTheFirstWordOfALoadAndLosesNoEdge) {
+  const std::uint64_t seed = random_seed();
+  SCOPED_TRACE(testing::Message() << "rerun with GRAVURE_TEST_SEED=" << seed);
+  Words words(seed);
+  for (int trial = 0; trial < 200; ++trial) {
+    AbRegisters registers = random_registers(words);
+    Running forward(registers);
+    Running turning(registers);
+    const int latency = AbGenerator::load_latency(turning.widths);
+    int way = 1;
+    int next_way = 1;
+    int turns_at = latency + 1;  // of the first load
+    AbPins forward_before;
+    AbPins turning_before;
+    for (int clock = 1; clock <= 3000; ++clock) {
+      const bool loads = clock % 2 == 0 && clock > turns_at && words.below(40) == 0;
+      if (loads) {
+        registers.increment = words.word() % (max_increment(registers) + 1);
+        turns_at = clock + latency + 1;  // its first word shows there
+        next_way = words.below(2) == 0 ? 1 : -1;
+      }
+      for (Running* each : {&forward, &turning}) {
+        each->inputs.load = loads || (clock % 2 != 0 && each->inputs.load);
+        each->inputs.increment = registers.increment;
+      }
+      turning.inputs.backward = next_way < 0;
+      way = clock == turns_at ? next_way : way;
+      const AbPins forward_now = forward.step();
+      const AbPins turning_now = turning.step();
+      ASSERT_EQ(moved(turning_before, turning_now), way * moved(forward_before, forward_now))
+          << "clock " << clock << " of trial " << trial;
+      forward_before = forward_now;
+      turning_before = turning_now;
     }
   }
 }

@@ -24,26 +24,31 @@ AbPacer::Inputs random_load(Dice& dice, const AbGenerator::Widths& widths) {
   const std::int64_t den = dice.between(1, 63);
   return {.enable = true,
           .load = true,
+          .backward = dice.coin(),
           .increment = static_cast<std::uint64_t>(dice.coin() ? dice.between(0, quarter - 1) : quarter / 2),
           .prescaler = static_cast<std::uint64_t>(dice.coin() ? 1 : dice.between(1, 9)),
           .fraction_num = static_cast<std::uint64_t>(dice.coin() ? 0 : dice.between(0, den - 1)),
           .fraction_den = static_cast<std::uint64_t>(den)};
 }
 
-/// A generator after a load and some clocks, even in number.
+/// A generator after two loads and some clocks, even in number: it may have turned where A and B differ.
 AbGenerator running(Dice& dice, const AbGenerator::Widths& widths, bool& enable, std::uint64_t& clock) {
   AbGenerator generator(widths);
-  AbPacer::Inputs in = random_load(dice, widths);
-  for (int half = 0; half < AbGenerator::kClockMultiplier; ++half) {
-    generator.step(in);
+  AbPacer::Inputs in;
+  for (int load = 0; load < 2; ++load) {
+    in = random_load(dice, widths);
+    for (std::int64_t left = 2 * dice.between(20, 200); left > 0; --left) {
+      generator.step(in);
+      in.load = left % 2 == 0 && in.load;
+      ++clock;
+    }
   }
-  in.load = false;
   const std::int64_t clocks = 2 * dice.between(60, 400);
   for (std::int64_t count = 0; count < clocks; ++count) {
     in.enable = count < clocks / 2 || enable;
     generator.step(in);
   }
-  clock += static_cast<std::uint64_t>(clocks) + 2;
+  clock += static_cast<std::uint64_t>(clocks);
   return generator;
 }
 

@@ -90,7 +90,7 @@ class SlowHost {
   }
 
   void set_up() {
-    write(kControlRegister, 0);
+    write(kControlRegister, dice_.word() & 384U);
     set_up_axes();
     write(kSeedsPerSlotRegister, seeds_);
     write(kSlotsPerLineRegister, slots_);
@@ -116,7 +116,7 @@ class SlowHost {
     send(Damage::none);
     send(Damage::none);
     const bool timed = dice_.one_in(2);
-    write(kControlRegister, 1U + 2U + 8U + (dice_.one_in(2) ? 4U : 0U) + (timed ? 16U : 0U) + (dice_.word() & 96U));
+    write(kControlRegister, 1U + 2U + 8U + (dice_.one_in(2) ? 4U : 0U) + (timed ? 16U : 0U) + (dice_.word() & 480U));
     write(kCommandRegister, timed || dice_.one_in(2) ? 64 : 0);
     in_.start = !timed;
     hold(1);

@@ -8,7 +8,7 @@
 namespace gravure::fpga {
 
 /// Bit-exact model of fpga/rtl/ab_accumulator.v: the counter and its pins. One step() is one rising edge of the FPGA
-/// clock, two a seed clock. The segments of the Verilog show here as a delay of the two leading bits alone.
+/// clock, two a seed clock. The segments of the Verilog show here as a delay of the pins alone.
 class AbAccumulator {
  public:
   struct Inputs {
@@ -17,6 +17,7 @@ class AbAccumulator {
     unsigned due = 0;    ///< two bits, as AbPacer gives them
     unsigned carry = 0;  ///< two bits
     std::uint64_t step = 0;
+    bool back = false;  ///< edges run backward; to turn makes none
   };
   using Outputs = AbPins;
 
@@ -33,18 +34,22 @@ class AbAccumulator {
   Outputs step(const Inputs& in) noexcept {
     if (now_.clear) {
       out_ = {};
-      count_ = quarters_ = add_ = 0;
+      count_ = turns_ = add_ = 0;
+      add_back_ = false;
     } else {
-      out_ = pins_of_quarter(quarters_ >> top_shift_);
+      out_ = pins_of_quarter(turns_ >> top_shift_);
+      const std::uint64_t quarter = count_ >> quarter_shift_;
       count_ = (count_ + add_) & mask_;
-      quarters_ = (quarters_ << 2U) | (count_ >> quarter_shift_);
+      show_turn((count_ >> quarter_shift_) - quarter);
       add_ = now_.due ? now_.step + (now_.carry ? 1U : 0U) : 0U;
+      add_back_ = now_.back;
     }
     const unsigned bit = in.beat != was_beat_ ? 0 : 1;
     was_beat_ = in.beat;
     now_ = {.clear = in.clear,
             .due = ((in.due >> bit) & 1U) != 0,
             .carry = ((in.carry >> bit) & 1U) != 0,
+            .back = in.back,
             .step = in.step & mask_};
     return out_;
   }
@@ -56,16 +61,23 @@ class AbAccumulator {
     bool clear = false;
     bool due = false;
     bool carry = false;
+    bool back = false;
     std::uint64_t step = 0;
   };
+  /// Quarter turns there and back, the pins' own.
+  void show_turn(std::uint64_t moved) noexcept {
+    turns_ = (turns_ << 2U) | ((add_back_ ? turns_ - moved : turns_ + moved) & 3U);
+  }
+
   std::uint64_t mask_;
   unsigned quarter_shift_;
   unsigned top_shift_;
   bool was_beat_ = false;
   Now now_;
   std::uint64_t add_ = 0;
-  std::uint64_t count_ = 0;     ///< as the lowest segment has it
-  std::uint64_t quarters_ = 0;  ///< its two leading bits, the latest lowest; the leading segment shows an older pair
+  bool add_back_ = false;
+  std::uint64_t count_ = 0;  ///< as the lowest segment has it
+  std::uint64_t turns_ = 0;  ///< two bits a clock, the latest lowest; the leading segment shows an older pair
   Outputs out_;
 };
 

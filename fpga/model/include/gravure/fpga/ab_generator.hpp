@@ -40,8 +40,12 @@ class AbGenerator {
   explicit AbGenerator(const Widths& widths) noexcept : pacer_(widths), accumulator_(widths) {}
 
   Outputs step(const Inputs& inputs) noexcept {
-    const AbPins pins =
-        accumulator_.step({.clear = clear_, .beat = beat_, .due = word_.due, .carry = word_.carry, .step = word_.step});
+    const AbPins pins = accumulator_.step({.clear = clear_,
+                                           .beat = beat_,
+                                           .due = word_.due,
+                                           .carry = word_.carry,
+                                           .step = word_.step,
+                                           .back = word_.back});
     if (seed_edge_) {
       beat_ = !inputs.rst && !beat_;
       clear_ = inputs.rst;

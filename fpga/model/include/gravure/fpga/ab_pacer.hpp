@@ -27,6 +27,7 @@ class AbPacer {
     bool rst = false;
     bool enable = false;          ///< low: everything stands
     bool load = false;            ///< takes all registers, starts a new count of clocks, keeps the counter
+    bool backward = false;        ///< the way the edges shall run; taken by a load alone
     bool load_increment = false;  ///< takes the increment alone, without a gap
     std::uint64_t increment = 0;
     std::uint64_t prescaler = 0;
@@ -37,6 +38,7 @@ class AbPacer {
     unsigned due = 0;    ///< bit 0: the first of the two FPGA clocks steps, bit 1: the second does
     unsigned carry = 0;  ///< and by one more
     std::uint64_t step = 0;
+    bool back = false;     ///< and the edges run backward
     bool refused = false;  ///< the last load would have broken a rule and changed nothing
     bool busy = false;     ///< a load is under way
   };
@@ -50,6 +52,7 @@ class AbPacer {
   /// A load on its way into force.
   struct Load {
     std::uint64_t step = 0;
+    bool back = false;
     std::uint64_t period = 0;
     std::uint64_t num = 0;
     std::uint64_t den = 0;

@@ -34,6 +34,9 @@ class AxisTrack {
 
  private:
   void advance(Uint128 steps) noexcept;
+  std::uint64_t turned(std::uint64_t turn, std::uint64_t quarters) const noexcept {
+    return back_ ? turn - quarters : turn + quarters;
+  }
 
   AbGenerator front_;
   bool enable_;
@@ -44,7 +47,9 @@ class AxisTrack {
   std::uint64_t den_ = 1;
 
   std::uint64_t next_clock_ = kNever;
-  std::uint64_t quarter_ = 0;
+  std::uint64_t quarter_ = 0;  ///< of the counter at the start
+  std::uint64_t turn_ = 0;     ///< of the pins, modulo 4
+  bool back_ = false;
   Uint128 per_step_ = 0;  ///< P, in counts * den
   Uint128 per_edge_ = 0;  ///< Q
   Uint128 over_ = 0;      ///< by how much the pending edge's step goes past it, < P

@@ -23,7 +23,7 @@ struct Register {
 inline constexpr Register kMagicRegister{
     "magic", 0x47524156, 32, 0x00, RegisterAccess::read_only};
 inline constexpr Register kVersionRegister{
-    "version", 0x3, 32, 0x01, RegisterAccess::read_only};
+    "version", 0x4, 32, 0x01, RegisterAccess::read_only};
 inline constexpr Register kCounterBitsRegister{
     "counter_bits", 0x20, 8, 0x02, RegisterAccess::read_only};
 inline constexpr Register kFifoBitsRegister{
@@ -31,7 +31,7 @@ inline constexpr Register kFifoBitsRegister{
 inline constexpr Register kClockMultiplierRegister{
     "clock_multiplier", 0x2, 8, 0x04, RegisterAccess::read_only};
 inline constexpr Register kControlRegister{
-    "control", 0x0, 7, 0x10, RegisterAccess::read_write};
+    "control", 0x0, 9, 0x10, RegisterAccess::read_write};
 inline constexpr Register kCommandRegister{
     "command", 0x0, 10, 0x11, RegisterAccess::write_only};
 inline constexpr Register kStatusRegister{
@@ -164,10 +164,10 @@ constexpr std::uint32_t unused_bits(unsigned address) noexcept {
     case kFractionNum1Register.address + 1:
     case kFractionDen1Register.address + 1:
       return 0xfffffffc;
-    case kControlRegister.address:
-      return 0xffffff80;
     case kCorrectionLimitRegister.address:
       return 0xffffff00;
+    case kControlRegister.address:
+      return 0xfffffe00;
     case kCommandRegister.address:
       return 0xfffffc00;
     case kSeedsPerSlotRegister.address:
@@ -225,8 +225,8 @@ inline constexpr std::array<StoredWord, 30> kStoredWords{{
 
 /// The descriptor ROM from address 0x80 on: kind << 24 | version << 16 | size.
 inline constexpr std::array<std::uint32_t, 12> kDescriptors{
-    0x01020020,  // A-B generator, axis 0: 32 counter bits
-    0x01020020,  // A-B generator, axis 1: 32 counter bits
+    0x01030020,  // A-B generator, axis 0: 32 counter bits
+    0x01030020,  // A-B generator, axis 1: 32 counter bits
     0x02010022,  // fraction of axis 0: 34 bits
     0x03020100,  // increment schedule, axis 0: 256 segments
     0x03020100,  // increment schedule, axis 1: 256 segments

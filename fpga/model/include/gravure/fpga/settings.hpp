@@ -19,7 +19,7 @@ class Settings {
   };
   /// Named as in docs/registers.md.
   struct Outputs {
-    std::uint8_t control = kControlRegister.reset;
+    std::uint16_t control = kControlRegister.reset;
     std::uint16_t command = 0;  ///< for one clock
     std::uint32_t increment = kIncrementRegister.reset;
     std::uint32_t prescaler = kPrescalerRegister.reset;
