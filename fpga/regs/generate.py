@@ -9,6 +9,23 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+GOING_ON = """## Going on after a fault
+
+1. Read `executed_lines` and `closed_slot`. They stand two seed clocks after `status` shows the fault, and until the next step.
+2. Stop the slots, acknowledge.
+3. Load the position of the line that many behind the one loaded before, and send lines from there on. Where bit 31 of
+   `closed_slot` was set, clear the bits of that line's slots before bits 23..0: bit n of a frame is slot first slot + n.
+4. Run, start. A line that is cut again before it came to new slots: the larger of both numbers counts.
+
+No pulse is lost by that but the one that the closing gate cut short, and none fires twice, because of this rule: a slot has passed when
+the gate let its decision through, in the window or not, bit 1 or 0, however soon the gate closed after that. A slot in whose midst the
+gate closed has passed, since its pulse may have; one whose decision met the closed gate, on the same clock or later, has not: the gate
+never opened for it. As the gate sees them, slots begin `SLOT_TO_GATE` seed clocks after their first clock, those of backward lines
+`reverse_delay` later; with the delay shorter than a slot this never changes their order, so the slots of a line that have passed are
+its first ones. A line is executed once its last slot has passed, and counts when that is over: with the next slot, or because the
+gate closed in it. A line that began without a frame, while a fault stood or before the last acknowledge or load does not count.
+A stop of the slots (control bit 0) cuts a line like a fault; an acknowledge while lines run drops what ran without a word."""
+
 COLUMNS = ("name", "address", "bits", "access", "reset", "range", "meaning")
 
 
@@ -194,6 +211,7 @@ def make_page(registers, blocks, latencies):
         reset = f"{r['reset']:#x}" if r["reset"] > 0xFFFF else str(r["reset"])
         text.append(f"| 0x{r['address']:02x} | `{r['name']}` | {r['bits']} | {r['access']} | {reset} | {r['range']} | "
                     f"{r['meaning']} |".replace("|  |", "| |"))
+    text += ["", GOING_ON]
     text += ["", "## Descriptor ROM", "", "What the board is made of, a word a block (kind in bits 31..24, version in 23..16, size in 15..0) and a 0 behind the",
              "last. The host reads it when it opens the board.", "", "| address | word | block | size |", "|---|---|---|---|"]
     text += [f"| {0x80 + number:#04x} | {word:#010x} | {name} | {size} {meaning} |"

@@ -9,6 +9,7 @@ localparam SLOT_LATENCY = 1;  // seed clocks: a slot's first clock to `slot`
 localparam SEQUENCER_LATENCY = 1;  // seed clocks: `slot` to the decision
 localparam DELAY_LATENCY = 1;  // seed clocks: the decision through direction_delay; for backward lines reverse_delay more
 localparam GATE_LATENCY = 1;  // seed clocks: the delayed decision to `gate`
+localparam PROGRESS_LATENCY = 1;  // seed clocks: a slot's begin, its end or a cut at `gate` to closed_slot and executed_lines
 localparam SCAN_LATENCY = 1;  // seed clocks: the decision to `scan`
 localparam SLOT_TO_GATE = SLOT_LATENCY + SEQUENCER_LATENCY + DELAY_LATENCY + GATE_LATENCY;  // seed clocks: a slot's first clock to `gate`
 localparam SLOT_TO_SCAN = SLOT_LATENCY + SEQUENCER_LATENCY + SCAN_LATENCY;  // seed clocks: a slot's first clock to `scan`

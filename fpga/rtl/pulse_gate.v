@@ -5,7 +5,9 @@
 // `run` is low the gate is closed.
 // Fails dark: `fault`, or a bit that is missing when its slot begins (`underrun`, sticky), closes the gate on that clock
 // and keeps it closed until `clear`, which drops the prefetched byte too, and then until a line begins.
-// Latency: `gate` is a flip-flop, GATE_LATENCY after the sequencer's outputs. Reset: dark until clear.
+// passed: the decision of a slot was let through: with its bit, or closed outside the window. Those of a line are its first
+// ones. open: and the next one of this line will be; low from its last.
+// Latency: all outputs are flip-flops, `gate` and `passed` GATE_LATENCY after the sequencer's outputs. Reset: dark until clear.
 `default_nettype none
 module pulse_gate (
     input wire clk,
@@ -23,9 +25,10 @@ module pulse_gate (
     output reg gate,
     output reg byte_take,
     output reg underrun,
-    output reg dark
+    output reg dark,
+    output reg passed,
+    output reg open
 );
-  reg open;  // this line may fire
   reg [7:0] bits;
   reg [3:0] left;
   reg [7:0] next;
@@ -40,6 +43,7 @@ module pulse_gate (
 
   always @(posedge clk) begin
     byte_take <= 1'b0;
+    passed <= slot && decision && line_open && !closed && !starved && run && !rst && !clear;
     if (rst || clear) begin
       gate <= 1'b0;
       open <= 1'b0;
@@ -72,10 +76,13 @@ module pulse_gate (
 
 `ifdef FORMAL
   reg valid = 1'b0;
-  reg could_open, was_bad, was_slot;
+  reg could_open, was_bad, was_slot, was_last;
+  reg missed;  // a decision of this line, the one shown now included, did not pass
   initial assume (rst);
   always @(posedge clk) begin
     valid <= 1'b1;
+    was_last <= last;
+    if (slot && decision) missed <= (missed && !first) || !line_open || closed || starved || !run || rst || clear;
     could_open <= slot && decision && window && run && !fault && !dark && !rst && !clear;
     was_bad <= fault || dark || !run || rst || clear || starved;
     was_slot <= slot;
@@ -89,6 +96,10 @@ module pulse_gate (
     if (dark) assert (!gate);
     if (underrun) assert (dark);                       // sticky until clear
     assert (left <= 7);
+    if (gate && was_slot) assert (passed);             // what fires has passed,
+    if (passed) assert (was_slot && !was_bad && !missed);  // and all of the line before it
+    if (passed) assert (open == !was_last);
+    if (open) assert (!missed);
   end
 `endif
 endmodule

@@ -14,6 +14,8 @@ module register_read #(
     input wire [FIFO_BITS+1:0] level,
     input wire [5:0] faults,
     input wire [17:0] index_error,
+    input wire [31:0] executed_lines,
+    input wire [31:0] closed_slot,
     input wire store,
     input wire [7:0] store_address,
     input wire [31:0] store_data,
@@ -50,6 +52,8 @@ module register_read #(
       ADDRESS_FIFO_LEVEL: of_board <= {{(30 - FIFO_BITS) {1'b0}}, level};
       ADDRESS_FAULTS: of_board <= {26'd0, faults};
       ADDRESS_INDEX_ERROR: of_board <= {{14{index_error[17]}}, index_error};
+      ADDRESS_EXECUTED_LINES: of_board <= executed_lines;
+      ADDRESS_CLOSED_SLOT: of_board <= closed_slot;
       default: of_board <= 32'd0;
     endcase
     read_data <= rst ? 32'd0 : of_rom ? descriptor : of_board | (of_memory ? stored : initial_word);

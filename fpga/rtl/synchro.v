@@ -2,13 +2,15 @@
 // clk_fast is the FPGA clock, two a seed clock, an edge of it with every edge of clk.
 //
 // host bytes -> frame_parser -> line_fifo (bits) and line queue (first slot, direction) -> pulse_gate, paced by line_start,
-// slot_divider, line_sequencer and direction_delay; two axes by ab_generator, each with its increment_schedule;
-// scanner_clock; index_reference lets the lines follow the axis; watchdog and fault_latch close the gate.
+// slot_divider, line_sequencer and direction_delay; line_progress says how far lines came; two axes by ab_generator, each
+// with its increment_schedule; scanner_clock; index_reference lets the lines follow the axis; watchdog and fault_latch close
+// the gate.
 // Axis 1 has a fraction where FRACTION_1 is 1; with two the logic does not close on an HX8K.
 // Once lines have begun they follow without a gap for as long as slots run: the machine never waits, a line that is not
 // there in time is an underrun.
 // Fails dark: any fault, the interlock or a stop closes the gate; command bit 0 acknowledges, and drops all that was queued.
-// To go on after a fault: stop the slots, acknowledge, load the position, send lines, run, start.
+// To go on after a fault: read executed_lines and closed_slot, stop the slots, acknowledge, load the position, send lines
+// (the first without the bits of the slots that have passed), run, start.
 // Latency: a slot's first clock to `gate` is SLOT_TO_GATE seed clocks (divider, sequencer, delay, gate), to `scan`
 // SLOT_TO_SCAN; an address to read_data READ_LATENCY (latencies.vh has all of these names). Reset: as the map says, dark, everything standing.
 `default_nettype none
@@ -172,7 +174,7 @@ module synchro #(
     line_missing <= missing && !rst && !acknowledge;
     was_missing <= line_missing && !rst && !acknowledge;
   end
-  wire underrun, dark, silent, any_fault;
+  wire underrun, dark, silent, any_fault, passed, open;
   reg stream_error;  // anything wrong with what the host sent
   always @(posedge clk)
     stream_error <= !rst && !acknowledge &&
@@ -181,7 +183,15 @@ module synchro #(
   pulse_gate pulses (
       .clk(clk), .rst(rst), .run(run), .clear(acknowledge), .fault(close), .slot(gate_slot), .decision(decision),
       .window(window), .first(first), .last(last), .byte_valid(byte_valid), .byte_data(byte_data), .gate(gate),
-      .byte_take(byte_take), .underrun(underrun), .dark(dark)
+      .byte_take(byte_take), .underrun(underrun), .dark(dark), .passed(passed), .open(open)
+  );
+  wire [31:0] executed_lines;
+  wire [23:0] passed_slots;
+  wire partial_line;
+  line_progress progress (
+      .clk(clk), .rst(rst), .clear(acknowledge), .load(command[3]), .run(run), .begins(line_first), .queued(queue_valid),
+      .slot(gate_slot), .passed(passed), .open(open), .dark(dark), .executed(executed_lines), .slots(passed_slots),
+      .partial(partial_line)
   );
 
   // Faults.
@@ -202,15 +212,19 @@ module synchro #(
                         schedule_busy, ab_refused[1], overflow || queue_overflow, ab_refused[0], running, dark, fault};
   register_read #(.FIFO_BITS(FIFO_BITS)) reader (
       .clk(clk), .rst(rst), .address(address), .status(status), .level(level), .faults(faults_seen),
-      .index_error(index_error), .store(store), .store_address(store_address), .store_data(store_data),
+      .index_error(index_error), .executed_lines(executed_lines), .closed_slot({partial_line, 7'd0, passed_slots}),
+      .store(store), .store_address(store_address), .store_data(store_data),
       .read_data(read_data)
   );
   /* verilator lint_on PINCONNECTEMPTY */
 
 `ifdef FORMAL_TOP
   // How the blocks are wired: whatever the host and the pins do, one clock after reset, a stop, an open interlock, any
-  // fault, a dark gate or an acknowledge the gate is closed; and it opens by a bit of a line in its window alone.
+  // fault, a dark gate or an acknowledge the gate is closed; and it opens by a bit of a line in its window alone. Two clocks
+  // after a fault has shown, how far the lines came stands.
   reg valid = 1'b0, must_close, may_open, was_gate, was_fault;
+  reg [1:0] stood = 2'd0;  // clocks of a fault
+  reg [56:0] past_progress;
   initial assume (rst);
   always @(posedge clk) begin
     valid <= 1'b1;
@@ -218,11 +232,14 @@ module synchro #(
     may_open <= gate_slot && decision && window;
     was_gate <= gate;
     was_fault <= fault != 0 && !rst && !acknowledge;
+    stood <= fault == 0 || rst || acknowledge || command[3] ? 2'd0 : stood + (stood != 2'd3);
+    past_progress <= {executed_lines, partial_line, passed_slots};
   end
   always @(*) if (valid) begin
     if (must_close) assert (!gate);
     if (gate && !was_gate) assert (may_open);
     if (was_fault) assert (fault != 0);  // sticky until it is acknowledged
+    if (stood == 2'd3) assert (past_progress == {executed_lines, partial_line, passed_slots});
   end
 `endif
 endmodule

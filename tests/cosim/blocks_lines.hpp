@@ -2,6 +2,7 @@
 
 #include "gravure/fpga/direction_delay.hpp"
 #include "gravure/fpga/index_reference.hpp"
+#include "gravure/fpga/line_progress.hpp"
 #include "gravure/fpga/line_sequencer.hpp"
 #include "gravure/fpga/line_start.hpp"
 #include "gravure/fpga/scanner_clock.hpp"
@@ -116,6 +117,32 @@ struct SlotGatePorts {
     visit("byte_take", out.byte_take);
     visit("underrun", out.underrun);
     visit("dark", out.dark);
+    visit("passed", out.passed);
+    visit("open", out.open);
+  }
+};
+
+struct LineProgressPorts {
+  using Model = fpga::LineProgress;
+  static Model make() { return Model(); }
+  template <class In, class Visitor>
+  static void in(In& in, Visitor&& visit) {
+    visit("rst", in.rst);
+    visit("clear", in.clear);
+    visit("load", in.load);
+    visit("run", in.run);
+    visit("begins", in.begins);
+    visit("queued", in.queued);
+    visit("slot", in.slot);
+    visit("passed", in.passed);
+    visit("open", in.open);
+    visit("dark", in.dark);
+  }
+  template <class Out, class Visitor>
+  static void out(Out& out, Visitor&& visit) {
+    visit("executed", out.executed, 32);
+    visit("slots", out.slots, 24);
+    visit("partial", out.partial);
   }
 };
 

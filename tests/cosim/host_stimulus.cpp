@@ -18,6 +18,14 @@ FrameMaker::Damage random_damage(Dice& dice, std::uint64_t rarity) {
   return dice.one_in(2) ? FrameMaker::Damage::in_content : FrameMaker::Damage::on_the_way;
 }
 
+/// What is read while nothing is written: anything, and often how far the lines came.
+std::uint64_t idle_address(Dice& dice) {
+  if (dice.one_in(4)) {
+    return dice.one_in(2) ? fpga::kExecutedLinesRegister.address : fpga::kClosedSlotRegister.address;
+  }
+  return dice.word() % 160;
+}
+
 }  // namespace
 
 FrameStimulus::FrameStimulus(const std::vector<Port>& ports) : places_(places_of(ports)) {}
@@ -200,7 +208,7 @@ void HostStimulus::operator()(Dice& dice, std::span<std::uint64_t> in) {
   set("index", clock_ >= next_index_ ? 1 : 0);
   set("start", action.kind == Action::Kind::start ? 1 : 0);
   set("write", action.kind == Action::Kind::write ? 1 : 0);
-  set("address", action.kind == Action::Kind::write ? action.address : dice.word() % 160);
+  set("address", action.kind == Action::Kind::write ? action.address : idle_address(dice));
   set("write_data", action.kind == Action::Kind::write ? action.data : dice.word() & 0xFFFF'FFFFU);
   set("in_valid", action.kind == Action::Kind::byte ? 1 : 0);
   set("in_data", action.kind == Action::Kind::byte ? action.data : dice.word() & 0xFFU);

@@ -44,6 +44,10 @@ std::uint32_t RegisterRead::value(const Inputs& in) const noexcept {
       return in.faults;
     case kIndexErrorRegister.address:
       return (in.index_error & 0x20000U) != 0 ? in.index_error | 0xFFFC0000U : in.index_error;
+    case kExecutedLinesRegister.address:
+      return in.executed_lines;
+    case kClosedSlotRegister.address:
+      return in.closed_slot;
     default:
       return stored_[in.address];
   }

@@ -173,6 +173,16 @@ void Synchro::step_gate(const Inputs& in, const Wires& was) noexcept {
                           .last = was.delayed.last,
                           .byte_valid = was.bits.valid,
                           .byte_data = was.bits.data});
+  now_.progress = progress_.step({.rst = in.rst,
+                                  .clear = clear,
+                                  .load = has(s, kPosition),
+                                  .run = run,
+                                  .begins = was.line.first,
+                                  .queued = was.queue.valid,
+                                  .slot = was.delayed.slot,
+                                  .passed = was.gate.passed,
+                                  .open = was.gate.open,
+                                  .dark = was.gate.dark});
 }
 
 void Synchro::step_faults(const Inputs& in, const Wires& was) noexcept {
@@ -223,6 +233,8 @@ void Synchro::step_seed(const Inputs& in) noexcept {
                           .level = was.bits.level,
                           .faults = was.faults.seen,
                           .index_error = was.reference.error,
+                          .executed_lines = was.progress.executed,
+                          .closed_slot = was.progress.closed_slot(),
                           .store = was.settings.store,
                           .store_address = was.settings.store_address,
                           .store_data = was.settings.store_data});

@@ -48,6 +48,9 @@ TEST(CApi, StepsTheBoard) {
   std::uint32_t magic = 0;
   ASSERT_EQ(c_read(12, 0x00, &magic), 1);
   EXPECT_EQ(magic, 0x47524156U);
+  std::uint32_t version = 0;
+  ASSERT_EQ(c_read(12, 0x01, &version), 1);
+  EXPECT_EQ(version, 4U);
   EXPECT_EQ(c_read(3, 0x00, &magic), 0);
   EXPECT_EQ(c_read(17, 0x00, &magic), 0);
   EXPECT_EQ(c_axis_edges(0, 10'000), 0);

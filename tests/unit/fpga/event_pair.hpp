@@ -17,6 +17,10 @@ inline void PrintTo(const SynchroEvents::Event& event, std::ostream* out) {
        << ", level " << event.fifo_level;
 }
 
+inline void PrintTo(const LineProgress::Outputs& progress, std::ostream* out) {
+  *out << progress.executed << " lines, " << progress.slots << " slots" << (progress.partial ? ", cut" : "");
+}
+
 }  // namespace gravure::fpga
 
 namespace gravure::fpga::test {
@@ -46,6 +50,10 @@ class EventPair {
         expected_.push_back(now_);
       }
       faults_ |= 1U << out.fault;
+      const LineProgress::Outputs& progress = clocked_.line_progress();
+      cuts_ += progress.partial && !progress_.partial ? 1 : 0;
+      executed_ += progress.executed > progress_.executed ? 1 : 0;
+      progress_ = progress;
     }
     events_.run(in, clocks, [this](const Event& event) { found_.push_back(event); });
     seen_ += expected_.size();
@@ -56,6 +64,8 @@ class EventPair {
   std::uint64_t seen() const { return seen_; }
   std::uint64_t stepped() const { return events_.stepped(); }
   unsigned faults() const { return faults_; }  ///< bit n: fault n was there
+  std::uint64_t cuts() const { return cuts_; }
+  std::uint64_t executed_lines() const { return executed_; }
 
  private:
   bool same() {
@@ -69,6 +79,7 @@ class EventPair {
     EXPECT_EQ(expected_.size(), found_.size()) << "events up to clock " << now_.clock;
     EXPECT_EQ(events_.clock(), now_.clock);
     EXPECT_EQ(events_.outputs().read_data, last_.read_data) << "after clock " << now_.clock;
+    EXPECT_EQ(events_.line_progress(), clocked_.line_progress()) << "after clock " << now_.clock;
     EXPECT_EQ(events_.outputs().a, last_.a);
     EXPECT_EQ(events_.outputs().b_1, last_.b_1);
     return !testing::Test::HasFailure();
@@ -82,6 +93,9 @@ class EventPair {
   std::vector<Event> found_;
   std::uint64_t seen_ = 0;
   unsigned faults_ = 0;
+  LineProgress::Outputs progress_;
+  std::uint64_t cuts_ = 0;
+  std::uint64_t executed_ = 0;
 };
 
 }  // namespace gravure::fpga::test

@@ -89,6 +89,8 @@ TEST(SynchroEvents, IsTheBoardClockByClockWhereSlotsAreLong) {
     ASSERT_TRUE(host.run_job());
   }
   EXPECT_EQ(pair.faults() | 8U, kEveryFault);
+  EXPECT_GT(pair.cuts(), 20U);
+  EXPECT_GT(pair.executed_lines(), 100U);
   EXPECT_LT(pair.stepped(), pair.clock() / 5) << "nothing was jumped over";
 }
 

@@ -31,6 +31,8 @@ inline constexpr int kSequencerLatency = 1;
 inline constexpr int kDelayLatency = 1;
 /// seed clocks: the delayed decision to `gate`.
 inline constexpr int kGateLatency = 1;
+/// seed clocks: a slot's begin, its end or a cut at `gate` to closed_slot and executed_lines.
+inline constexpr int kProgressLatency = 1;
 /// seed clocks: the decision to `scan`.
 inline constexpr int kScanLatency = 1;
 /// seed clocks: a slot's first clock to `gate`.
@@ -64,7 +66,7 @@ struct Latency {
   std::string_view name;  ///< as latencies.txt and the timing tables write it
   int clocks;
 };
-inline constexpr std::array<Latency, 24> kLatencies{{
+inline constexpr std::array<Latency, 25> kLatencies{{
     {"SETTINGS_LATENCY", kSettingsLatency},
     {"READ_LATENCY", kReadLatency},
     {"VERDICT_LATENCY", kVerdictLatency},
@@ -75,6 +77,7 @@ inline constexpr std::array<Latency, 24> kLatencies{{
     {"SEQUENCER_LATENCY", kSequencerLatency},
     {"DELAY_LATENCY", kDelayLatency},
     {"GATE_LATENCY", kGateLatency},
+    {"PROGRESS_LATENCY", kProgressLatency},
     {"SCAN_LATENCY", kScanLatency},
     {"SLOT_TO_GATE", kSlotToGate},
     {"SLOT_TO_SCAN", kSlotToScan},

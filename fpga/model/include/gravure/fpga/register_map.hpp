@@ -42,6 +42,10 @@ inline constexpr Register kFaultsRegister{
     "faults", 0x0, 6, 0x14, RegisterAccess::read_only};
 inline constexpr Register kIndexErrorRegister{
     "index_error", 0x0, 32, 0x15, RegisterAccess::read_only};
+inline constexpr Register kExecutedLinesRegister{
+    "executed_lines", 0x0, 32, 0x16, RegisterAccess::read_only};
+inline constexpr Register kClosedSlotRegister{
+    "closed_slot", 0x0, 32, 0x17, RegisterAccess::read_only};
 inline constexpr Register kIncrementRegister{
     "increment", 0x0, 32, 0x20, RegisterAccess::read_write};
 inline constexpr Register kPrescalerRegister{
@@ -119,6 +123,8 @@ inline constexpr Register kRegisters[] = {
     kFifoLevelRegister,
     kFaultsRegister,
     kIndexErrorRegister,
+    kExecutedLinesRegister,
+    kClosedSlotRegister,
     kIncrementRegister,
     kPrescalerRegister,
     kFractionNumRegister,

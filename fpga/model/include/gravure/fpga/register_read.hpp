@@ -19,7 +19,9 @@ class RegisterRead {
     std::uint32_t level = 0;
     std::uint8_t faults = 0;
     std::uint32_t index_error = 0;  ///< 18 bits
-    bool store = false;             ///< keeps store_data, at an address of kStoredWords
+    std::uint32_t executed_lines = 0;
+    std::uint32_t closed_slot = 0;
+    bool store = false;  ///< keeps store_data, at an address of kStoredWords
     std::uint8_t store_address = 0;
     std::uint32_t store_data = 0;
   };

@@ -28,19 +28,22 @@ class SlotGate {
     bool byte_take = false;
     bool underrun = false;  ///< sticky until clear
     bool dark = false;
+    bool passed = false;  ///< the decision of a slot was let through; those of a line are its first ones
+    bool open = false;    ///< and the next one of this line will be; low from its last
     friend bool operator==(const Outputs&, const Outputs&) = default;
   };
 
   Outputs step(const Inputs& in) noexcept {
     if (in.rst || in.clear) {
-      open_ = next_valid_ = false;
+      next_valid_ = false;
       left_ = 0;
       return out_ = {.dark = in.rst || in.fault};
     }
     const bool closed = out_.dark || in.fault;
-    const bool line_open = in.first || open_;
+    const bool line_open = in.first || out_.open;
     const bool wanted = in.slot && in.decision && in.window && line_open && !closed && in.run;
     const bool starved = wanted && left_ == 0 && !next_valid_;
+    const bool passes = in.slot && in.decision && line_open && !closed && !starved && in.run;
     const bool fetch = !next_valid_ && in.byte_valid && !out_.byte_take;
     if (closed || !in.run) {
       out_.gate = false;
@@ -50,10 +53,11 @@ class SlotGate {
     out_.dark = out_.dark || in.fault || starved;
     out_.underrun = out_.underrun || starved;
     if (closed || starved || !in.run) {
-      open_ = false;
+      out_.open = false;
     } else if (in.slot && in.decision) {
-      open_ = line_open && !in.last;
+      out_.open = line_open && !in.last;
     }
+    out_.passed = passes;
     out_.byte_take = fetch;
     if (fetch) {
       next_ = in.byte_data;
@@ -77,7 +81,6 @@ class SlotGate {
   }
 
   Outputs out_;
-  bool open_ = false;
   bool next_valid_ = false;
   int left_ = 0;
   unsigned bits_ = 0;

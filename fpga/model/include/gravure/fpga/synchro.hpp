@@ -10,6 +10,7 @@
 #include "gravure/fpga/increment_schedule.hpp"
 #include "gravure/fpga/index_reference.hpp"
 #include "gravure/fpga/line_fifo.hpp"
+#include "gravure/fpga/line_progress.hpp"
 #include "gravure/fpga/line_sequencer.hpp"
 #include "gravure/fpga/line_start.hpp"
 #include "gravure/fpga/register_map.hpp"
@@ -60,6 +61,8 @@ class Synchro {
   Outputs step(const Inputs& in) noexcept;
   /// As the register of that name has it.
   std::uint32_t fifo_level() const noexcept { return now_.bits.level; }
+  /// As the registers executed_lines and closed_slot have it.
+  const LineProgress::Outputs& line_progress() const noexcept { return now_.progress; }
 
  private:
   friend class SynchroEvents;
@@ -78,6 +81,7 @@ class Synchro {
     IndexReference::Outputs reference;
     DirectionDelay::Outputs delayed;
     SlotGate::Outputs gate;
+    LineProgress::Outputs progress;
     ScannerClock::Outputs scanner;
     Watchdog::Outputs host;
     FaultLatch::Outputs faults;
@@ -114,6 +118,7 @@ class Synchro {
   IndexReference reference_;
   DirectionDelay delay_;
   SlotGate gate_;
+  LineProgress progress_;
   ScannerClock scanner_;
   Watchdog host_;
   FaultLatch faults_;

@@ -46,6 +46,8 @@ class SynchroEvents {
   std::uint64_t clock() const noexcept { return now_.clock; }
   /// As Synchro::step() returned them on the last clock.
   Synchro::Outputs outputs() const noexcept;
+  /// As Synchro has it after the last clock.
+  const LineProgress::Outputs& line_progress() const noexcept { return board_.line_progress(); }
   /// How many seed clocks were stepped, of all that passed: the rest was jumped over.
   std::uint64_t stepped() const noexcept { return stepped_; }
 
