@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "motion_command.hpp"
+#include "texture_command.hpp"
 #include "verb.hpp"
 
 namespace {
@@ -53,7 +54,7 @@ std::string help_of(const CLI::App& app) {
   return "gravure " + verbs + "--help";
 }
 
-/// The verb that was given, as deep as it goes: "motion" has verbs of its own. The parser takes an unknown one for a
+/// The verb that was given, as deep as it goes: "motion" and "texture" have verbs of their own. The parser takes an unknown one for a
 /// missing one.
 const CLI::App& given_verb(const CLI::App& app, const std::vector<std::string>& arguments) {
   const CLI::App* level = &app;
@@ -125,6 +126,7 @@ int run(int argc, char** argv) {
   gravure::cli::add_export(app, command);
   gravure::cli::add_calibrate(app, command);
   gravure::cli::add_motion_command(app, command);
+  gravure::cli::add_texture(app, command);
   try {
     refuse_ambiguous(app, arguments);
     app.parse(argc, argv);

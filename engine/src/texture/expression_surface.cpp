@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <utility>
 
 #include "gravure/texture/surface.hpp"
 
@@ -22,6 +24,8 @@ class ExpressionSurface final : public Surface {
     parser_.SetExpr(expression);
     height(0, 0);  // it parses, or throws
   }
+  /// One value, not a list of them.
+  bool is_height() const { return parser_.GetNumResults() == 1; }
 
   Result<void> project(std::span<const Vector2> plane_mm, std::span<SurfacePoint> out) const override {
     for (std::size_t i = 0; i < plane_mm.size(); ++i) {
@@ -35,11 +39,10 @@ class ExpressionSurface final : public Surface {
                            (height(x, y + 2 * kStep_mm) - height(x, y - 2 * kStep_mm))) /
                               (12 * kStep_mm));
       if (!std::isfinite(z) || !slope.allFinite()) {
-        return Error{
-            ErrorCode::out_of_range,
-            fmt::format("surface \"{}\": at x = {} mm, y = {} mm it gives z = {}, slopes {} and {}; the texture "
-                        "must lie where the surface is finite and smooth",
-                        expression_, x, y, z, slope.x(), slope.y())};
+        return Error{ErrorCode::out_of_range,
+                     fmt::format("surface \"{}\": at x = {} mm, y = {} mm its height or slope is not finite; the "
+                                 "texture must lie where the surface is finite and smooth",
+                                 expression_, x, y)};
       }
       out[i] = {Vector3(x, y, z), Vector3(-slope.x(), -slope.y(), 1).normalized()};
     }
@@ -59,6 +62,18 @@ class ExpressionSurface final : public Surface {
   mutable double y_ = 0;
 };
 
+/// muParser would let an expression set x, and give several values.
+bool assigns(const std::string& expression) {
+  for (std::size_t i = 0; i < expression.size(); ++i) {
+    const bool compares = (i > 0 && std::string_view("<>!=").find(expression[i - 1]) != std::string_view::npos) ||
+                          (i + 1 < expression.size() && expression[i + 1] == '=');
+    if (expression[i] == '=' && !compares) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Surface>> expression_surface(const std::string& expression) {
@@ -67,8 +82,17 @@ Result<std::unique_ptr<Surface>> expression_surface(const std::string& expressio
     return Error{ErrorCode::bad_argument, fmt::format("surface expression: {} characters, at most {} are taken",
                                                       expression.size(), kMostCharacters)};
   }
+  if (assigns(expression)) {
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("surface expression \"{}\": sets a variable; write z alone, by x and y", expression)};
+  }
   try {
-    return std::unique_ptr<Surface>(std::make_unique<ExpressionSurface>(expression));
+    auto surface = std::make_unique<ExpressionSurface>(expression);
+    if (!surface->is_height()) {
+      return Error{ErrorCode::bad_argument,
+                   fmt::format("surface expression \"{}\": gives several values; write z alone", expression)};
+    }
+    return std::unique_ptr<Surface>(std::move(surface));
   } catch (const mu::Parser::exception_type& problem) {
     return Error{ErrorCode::bad_argument,
                  fmt::format("surface expression \"{}\", character {}: {}; write z in mm by x and y, for example "

@@ -30,6 +30,9 @@ TEST(ExpressionSurface, NamesThePlaceOfWhatDoesNotParse) {
   ASSERT_FALSE(surface);
   EXPECT_EQ(surface.error().code, ErrorCode::bad_argument);
   EXPECT_NE(surface.error().message.find("character"), std::string::npos);
+  EXPECT_FALSE(expression_surface("x = 3"));
+  EXPECT_FALSE(expression_surface("x, y"));
+  EXPECT_TRUE(expression_surface("x <= 3 ? 1 : 0"));
   EXPECT_FALSE(expression_surface("z + 1"));
   EXPECT_FALSE(expression_surface(""));
   EXPECT_FALSE(expression_surface(std::string(5000, '1')));

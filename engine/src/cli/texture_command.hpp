@@ -1,0 +1,10 @@
+#pragma once
+
+#include "verb.hpp"
+
+namespace gravure::cli {
+
+/// The verbs of `gravure texture`.
+void add_texture(CLI::App& app, Command& command);
+
+}  // namespace gravure::cli
