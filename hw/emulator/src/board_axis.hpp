@@ -26,6 +26,7 @@ class BoardAxis {
   AxisState state() const noexcept { return walk_.state(); }
   bool refused() const noexcept { return refused_; }
   bool busy() const noexcept { return left_ != 0 || (runs_ && !segments_.empty()); }
+  bool has_segments() const noexcept { return left_ != 0 || !segments_.empty(); }
   bool overflow() const noexcept { return overflow_; }
 
  private:

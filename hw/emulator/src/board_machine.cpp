@@ -1,8 +1,10 @@
 #include "board_machine.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "gravure/fpga/ab_generator.hpp"
+#include "gravure/fpga/line_progress.hpp"
 #include "gravure/fpga/pulse_gate.hpp"
 #include "gravure/protocol/status_message.hpp"
 
@@ -37,27 +39,33 @@ std::uint8_t bit_of(DeviceFault fault) noexcept {
 
 }  // namespace
 
-EmulatedBoard::Machine::Machine(BoardOptions options)
-    : options_(std::move(options)),
-      start_ns_(options_.now_ns ? options_.now_ns() : 0),
-      registers_(options_.fifo_bits),
-      stream_(options_.capacity_bytes),
-      random_(options_.seed) {}
+BoardMachine::BoardMachine(const Setup& setup, PinObserver& observer)
+    : setup_(setup),
+      observer_(&observer),
+      planned_(setup.faults),
+      registers_(setup.fifo_bits),
+      stream_(setup.capacity_bytes) {}
 
-LineStream::Shape EmulatedBoard::Machine::shape() const noexcept {
+LineStream::Shape BoardMachine::shape() const noexcept {
   const fpga::Settings::Outputs& s = registers_.settings();
   return {s.window_slots, s.slots_per_line, s.lines_per_revolution};
 }
 
-std::uint64_t EmulatedBoard::Machine::line_seeds() const noexcept {
+/// Over the whole job.
+std::int64_t BoardMachine::ordinal_of(LineStream::Place place) const noexcept {
+  const std::int64_t lines = registers_.settings().lines_per_revolution;
+  return std::int64_t{place.revolution} * lines + place.line;
+}
+
+std::uint64_t BoardMachine::line_seeds() const noexcept {
   const fpga::Settings::Outputs& s = registers_.settings();
   return std::uint64_t{s.slots_per_line} * s.seeds_per_slot;
 }
 
 /// Splitmix64.
-std::uint64_t EmulatedBoard::Machine::draw() noexcept {
-  random_ += 0x9E37'79B9'7F4A'7C15;
-  std::uint64_t value = random_;
+std::uint64_t BoardMachine::draw() noexcept {
+  setup_.random += 0x9E37'79B9'7F4A'7C15;
+  std::uint64_t value = setup_.random;
   value = (value ^ (value >> 30U)) * 0xBF58'476D'1CE4'E5B9;
   value = (value ^ (value >> 27U)) * 0x94D0'49BB'1331'11EB;
   return value ^ (value >> 31U);
@@ -65,22 +73,46 @@ std::uint64_t EmulatedBoard::Machine::draw() noexcept {
 
 // Time
 
-std::uint64_t EmulatedBoard::Machine::real_clock() const {
-  return static_cast<std::uint64_t>(Wide{options_.now_ns() - start_ns_} * options_.seed_hz / 1'000'000'000U);
-}
-
 /// A clock that runs freely has gone on since the last call.
-void EmulatedBoard::Machine::catch_up() {
+void BoardMachine::catch_up(std::uint64_t clock) {
   if (!stands_still()) {
-    run_until(std::max(clock_, real_clock()));
+    run_until(std::max(clock_, clock));
   }
 }
 
-void EmulatedBoard::Machine::pass_time() {
-  run_until(stands_still() ? kForEver : std::max(clock_, real_clock()));
+void BoardMachine::pass_time(std::uint64_t clock) {
+  run_until(stands_still() ? kForEver : std::max(clock_, clock));
 }
 
-void EmulatedBoard::Machine::run_until(std::uint64_t clock) {
+/// Whatever the watchdog makes of it: where it is off the lines run out.
+void BoardMachine::lose_host() {
+  const auto goes_on = [this] { return !faulty() && !power_lost_ && control(kRun) && (started_ || gone_); };
+  if (stands_still()) {
+    run_until(kForEver);
+    if (goes_on() && started_) {
+      close_gate(DeviceFault::underrun, 0);
+    }
+    return;
+  }
+  if (goes_on() && !started_ && control(kTimed)) {
+    run_until(std::max(clock_, go_clock_ + registers_.settings().first_tick));
+  }
+  while (goes_on() && started_) {
+    run_until(clock_ + line_seeds());
+  }
+}
+
+bool BoardMachine::can_run() const noexcept {
+  if (power_lost_ || !control(kRun)) {
+    return false;
+  }
+  if (faulty()) {
+    return started_ && (faults_ & bit_of(DeviceFault::underrun)) == 0;
+  }
+  return stream_.level() != 0 || gone_ || frame_lost_;
+}
+
+void BoardMachine::run_until(std::uint64_t clock) {
   const bool watched = !stands_still() && control(kWatch) && !faulty();
   const std::uint64_t silent = watched ? last_host_ + registers_.settings().silence_limit : kForEver;
   while (next_event(std::min(clock, silent))) {
@@ -96,7 +128,7 @@ void EmulatedBoard::Machine::run_until(std::uint64_t clock) {
   }
 }
 
-void EmulatedBoard::Machine::move_clock(std::uint64_t clock) {
+void BoardMachine::move_clock(std::uint64_t clock) {
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
     axes_[axis].run((clock - clock_) * kTicksPerSeed, control(kEnable[axis]), kTicksPerSeed);
   }
@@ -104,8 +136,11 @@ void EmulatedBoard::Machine::move_clock(std::uint64_t clock) {
 }
 
 /// The next thing that lines do up to `clock`, whose clock is then the board's; false: nothing.
-bool EmulatedBoard::Machine::next_event(std::uint64_t clock) {
+bool BoardMachine::next_event(std::uint64_t clock) {
   judge_all();
+  if (power_lost_) {
+    return false;
+  }
   if (faulty()) {
     if (started_ && dark_until_ <= clock) {
       faults_ |= bit_of(DeviceFault::underrun);  // dark lines run out as well
@@ -118,6 +153,9 @@ bool EmulatedBoard::Machine::next_event(std::uint64_t clock) {
   if (!started_) {
     return start_by(clock);
   }
+  if (line_runs_ && due_) {
+    return meet_fault(clock);
+  }
   if (line_runs_) {
     const bool ends = line_clock_ + line_seeds() <= clock;
     if (ends) {
@@ -129,14 +167,14 @@ bool EmulatedBoard::Machine::next_event(std::uint64_t clock) {
     begin_line();
     return true;
   }
-  if (!stands_still()) {
+  if (!stands_still() || frame_lost_) {
     close_gate(DeviceFault::underrun, 0);
   }
   return false;
 }
 
 /// Whether first_tick has come by then.
-bool EmulatedBoard::Machine::start_by(std::uint64_t clock) {
+bool BoardMachine::start_by(std::uint64_t clock) {
   const std::uint64_t begin = go_clock_ + registers_.settings().first_tick;
   if (!gone_ || !control(kTimed) || begin < clock_ || begin > clock) {
     return false;
@@ -150,15 +188,15 @@ bool EmulatedBoard::Machine::start_by(std::uint64_t clock) {
 // Lines
 
 /// Whether the FPGA's FIFO and queue take one line more.
-bool EmulatedBoard::Machine::has_room() const noexcept {
+bool BoardMachine::has_room() const noexcept {
   const std::size_t bytes = fpga::packed_bytes(registers_.settings().window_slots);
-  const std::size_t fifo = std::size_t{1} << static_cast<unsigned>(options_.fifo_bits);
+  const std::size_t fifo = std::size_t{1} << static_cast<unsigned>(setup_.fifo_bits);
   return stream_.lines() < kQueuedLines && (stream_.lines() + 1) * bytes <= fifo;
 }
 
 /// Judges one frame; false where there is none, or no room for it.
-bool EmulatedBoard::Machine::judge_next() {
-  if (faulty() || !stream_.next_frame(shape())) {
+bool BoardMachine::judge_next() {
+  if (faulty() || power_lost_ || !stream_.next_frame(shape())) {
     return false;
   }
   if (!has_room()) {
@@ -168,6 +206,9 @@ bool EmulatedBoard::Machine::judge_next() {
     }
     return false;
   }
+  if (spoil_frame()) {
+    return true;
+  }
   const DeviceFault fault = stream_.judge_frame(shape());
   if (fault != DeviceFault::none) {
     strike(fault);
@@ -175,72 +216,82 @@ bool EmulatedBoard::Machine::judge_next() {
   return fault == DeviceFault::none;
 }
 
-void EmulatedBoard::Machine::judge_all() {
+void BoardMachine::judge_all() {
   while (judge_next()) {
   }
 }
 
 /// Runs lines as long as a frame that is there waits for room.
-void EmulatedBoard::Machine::make_room() {
+void BoardMachine::make_room() {
   judge_all();
-  while (!faulty() && stream_.next_frame(shape()) && next_event(kForEver)) {
+  while (!faulty() && !power_lost_ && stream_.next_frame(shape()) && next_event(kForEver)) {
   }
 }
 
-void EmulatedBoard::Machine::begin_line() {
+void BoardMachine::begin_line() {
   line_runs_ = true;
   line_clock_ = clock_;
-  if (options_.observer != nullptr) {
-    axes_at_start_ = {axes_[0].state(), axes_[1].state()};
-  }
+  axes_at_start_ = {axes_[0].state(), axes_[1].state()};
+  due_ = planned_.at_line(ordinal_of(stream_.front().place));
 }
 
-void EmulatedBoard::Machine::end_line() {
+void BoardMachine::end_line() {
+  const std::uint64_t end = line_clock_ + line_seeds();
+  complete_line();
+  move_clock(end);
+}
+
+void BoardMachine::complete_line() {
   show_line(registers_.settings().slots_per_line);
-  move_clock(line_clock_ + line_seeds());
   drop_line();
   ++executed_;
   place_.line = place_.line + 1 >= registers_.settings().lines_per_revolution ? 0 : place_.line + 1;
   place_.revolution += place_.line == 0 ? 1U : 0U;
 }
 
-void EmulatedBoard::Machine::drop_line() {
+void BoardMachine::drop_line() {
   stream_.pop();
   line_runs_ = false;
+  due_.reset();
 }
 
 /// Shows what fires of the line that runs, up to `slots` of it.
-void EmulatedBoard::Machine::show_line(std::uint32_t slots) {
-  if (options_.observer == nullptr) {
-    return;
-  }
+void BoardMachine::show_line(std::uint32_t slots) {
   const LineStream::Line line = stream_.front();
   const fpga::Settings::Outputs& s = registers_.settings();
-  const auto ordinal =
-      std::int64_t{line.place.revolution} * std::int64_t{s.lines_per_revolution} + std::int64_t{line.place.line};
-  const bool late = control(kBackward) && (ordinal & 1) != 0;
-  const std::uint64_t start = line_clock_ - go_clock_ + (late ? s.reverse_delay : 0U);
+  const std::int64_t ordinal = ordinal_of(line.place);
+  const std::uint64_t start = line_clock_ - go_clock_ + delay_of(line.place);
   fired_.assign(line.bits.begin(), line.bits.end());
   if (slots < s.slots_per_line) {
     cut_line(fired_, line.first_slot, slots);
   }
-  options_.observer->on_line({.start_tick = static_cast<std::int64_t>(start * kTicksPerSeed),
-                              .ordinal = ordinal,
-                              .first_slot = line.first_slot,
-                              .fired = fired_,
-                              .axis_at_start = axes_at_start_[0],
-                              .carriage_at_start = axes_at_start_[1]});
+  observer_->on_line({.start_tick = static_cast<std::int64_t>(start * kTicksPerSeed),
+                      .ordinal = ordinal,
+                      .first_slot = line.first_slot,
+                      .fired = fired_,
+                      .axis_at_start = axes_at_start_[0],
+                      .carriage_at_start = axes_at_start_[1]});
 }
 
 /// Of the line that runs now.
-std::uint32_t EmulatedBoard::Machine::slots_begun() const noexcept {
-  const std::uint64_t seeds = clock_ - line_clock_;
-  const std::uint64_t each = registers_.settings().seeds_per_slot;
-  return line_runs_ ? static_cast<std::uint32_t>((seeds + each - 1) / each) : 0;
+std::uint32_t BoardMachine::slots_begun() const noexcept {
+  const fpga::Settings::Outputs& s = registers_.settings();
+  const std::uint64_t begin = line_clock_ + (line_runs_ ? delay_of(stream_.front().place) : 0U);
+  if (!line_runs_ || clock_ <= begin) {
+    return 0;
+  }
+  const std::uint64_t slots = (clock_ - begin + s.seeds_per_slot - 1) / s.seeds_per_slot;
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(slots, s.slots_per_line));
+}
+
+/// Seed clocks by which the slots of a line come later than those of a forward one.
+std::uint32_t BoardMachine::delay_of(LineStream::Place place) const noexcept {
+  const bool backward = control(kBackward) && (ordinal_of(place) & 1) != 0;
+  return backward ? registers_.settings().reverse_delay : 0U;
 }
 
 /// A fault that the stream brings: now, or where the clock stands still at any moment of the lines that are to run.
-void EmulatedBoard::Machine::strike(DeviceFault fault) {
+void BoardMachine::strike(DeviceFault fault) {
   const bool running = control(kRun) && (started_ || (stands_still() && start_by(kForEver)));
   if (!stands_still() || !running || stream_.lines() == 0) {
     close_gate(fault, slots_begun());
@@ -250,14 +301,23 @@ void EmulatedBoard::Machine::strike(DeviceFault fault) {
   const auto slots = static_cast<std::uint32_t>(draw() % registers_.settings().slots_per_line);
   for (; before != 0; --before) {
     begin_line();
+    if (due_) {
+      break;
+    }
     end_line();
   }
-  begin_line();
-  close_gate(fault, slots);
+  if (!line_runs_) {
+    begin_line();
+  }
+  if (!due_) {
+    close_gate(fault, slots);
+  } else {
+    meet_fault(kForEver);  // it comes first
+  }
 }
 
 /// The fault stands from now on, `slots` after the line that runs began.
-void EmulatedBoard::Machine::close_gate(DeviceFault fault, std::uint32_t slots) {
+void BoardMachine::close_gate(DeviceFault fault, std::uint32_t slots) {
   faults_ |= bit_of(fault);
   if (faulty()) {
     return;
@@ -268,13 +328,18 @@ void EmulatedBoard::Machine::close_gate(DeviceFault fault, std::uint32_t slots) 
   cut_short(slots);
 }
 
-/// The line that runs does not go on.
-void EmulatedBoard::Machine::cut_short(std::uint32_t slots) {
+/// The line that runs does not go on. Once its last slot has begun it is whole.
+void BoardMachine::cut_short(std::uint32_t slots) {
   if (!line_runs_) {
     return;
   }
+  if (slots >= registers_.settings().slots_per_line) {
+    complete_line();
+    return;
+  }
+  partial_ = slots != 0;
   closed_slot_ = slots;
-  if (slots != 0) {
+  if (partial_) {
     show_line(slots);
   }
   drop_line();
@@ -282,17 +347,19 @@ void EmulatedBoard::Machine::cut_short(std::uint32_t slots) {
 
 // Registers
 
-void EmulatedBoard::Machine::write_register(std::uint8_t address, std::uint32_t value) {
-  catch_up();
+std::uint16_t BoardMachine::write_register(std::uint8_t address, std::uint32_t value, std::uint64_t clock) {
+  catch_up(clock);
   last_host_ = clock_;
   const bool ran = control(kRun);
-  obey(registers_.write(address, value));
+  const std::uint16_t command = registers_.write(address, value);
+  obey(command);
   if (ran && !control(kRun)) {
     stop();
   }
+  return command;
 }
 
-void EmulatedBoard::Machine::load_axis(std::size_t axis) {
+void BoardMachine::load_axis(std::size_t axis) {
   const fpga::Settings::Outputs& s = registers_.settings();
   axes_[axis].load(axis == 0 ? fpga::AbRegisters{.prescaler = s.prescaler,
                                                  .increment = s.increment,
@@ -304,7 +371,7 @@ void EmulatedBoard::Machine::load_axis(std::size_t axis) {
                                                  .fraction_den = s.fraction_den_1});
 }
 
-void EmulatedBoard::Machine::obey(std::uint16_t command) {
+void BoardMachine::obey(std::uint16_t command) {
   const fpga::Settings::Outputs& s = registers_.settings();
   if ((command & kAcknowledge) != 0) {
     acknowledge();
@@ -313,6 +380,7 @@ void EmulatedBoard::Machine::obey(std::uint16_t command) {
     place_ = {s.position_revolution, s.position_line};
     stream_.set_place(place_);
     executed_ = closed_slot_ = 0;
+    partial_ = false;
     positioned_ = true;
   }
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
@@ -340,26 +408,27 @@ void EmulatedBoard::Machine::obey(std::uint16_t command) {
 }
 
 /// Also empties the buffers.
-void EmulatedBoard::Machine::acknowledge() noexcept {
+void BoardMachine::acknowledge() noexcept {
   fault_ = DeviceFault::none;
   faults_ = 0;
   closed_slot_ = 0;
-  overflow_ = line_runs_ = positioned_ = false;
+  overflow_ = line_runs_ = partial_ = positioned_ = frame_lost_ = false;
+  due_.reset();
   stream_.flush();
 }
 
 /// Slots run no more.
-void EmulatedBoard::Machine::stop() {
+void BoardMachine::stop() {
   cut_short(slots_begun());
   gone_ = started_ = positioned_ = false;
 }
 
-std::uint32_t EmulatedBoard::Machine::fifo_level() const noexcept {
+std::uint32_t BoardMachine::fifo_level() const noexcept {
   return static_cast<std::uint32_t>(stream_.lines() * fpga::packed_bytes(registers_.settings().window_slots));
 }
 
 /// As fpga::Synchro puts it together.
-std::uint16_t EmulatedBoard::Machine::status_word() const noexcept {
+std::uint16_t BoardMachine::status_word() const noexcept {
   const bool bits[] = {faulty(),
                        line_runs_,
                        axes_[0].refused(),
@@ -381,34 +450,135 @@ std::uint16_t EmulatedBoard::Machine::status_word() const noexcept {
   return static_cast<std::uint16_t>(value);
 }
 
-std::uint32_t EmulatedBoard::Machine::read_register(std::uint8_t address) {
-  catch_up();
-  return registers_.read(address, {.status = status_word(), .level = fifo_level(), .faults = faults_});
+std::uint32_t BoardMachine::read_register(std::uint8_t address, std::uint64_t clock) {
+  catch_up(clock);
+  const std::uint32_t slots = partial_ ? closed_slot_ | fpga::LineProgress::kPartialBit : slots_begun();
+  return registers_.read(address, {.status = status_word(),
+                                   .level = fifo_level(),
+                                   .faults = faults_,
+                                   .executed_lines = executed_,
+                                   .closed_slot = slots});
 }
 
 // The stream
 
-std::size_t EmulatedBoard::Machine::take(std::span<const std::byte> stream) {
-  catch_up();
-  const std::size_t taken = std::min(stream.size(), stream_.room());
-  if (taken != 0) {
-    last_host_ = clock_;
-    stream_.append(stream.first(taken));
-    if (stands_still()) {
-      make_room();
-    } else {
-      judge_all();
-    }
+/// Of `wanted` bytes, where some are planned never to be taken.
+std::size_t BoardMachine::most_taken(std::size_t wanted) const {
+  const std::optional<std::int64_t> full = planned_.first_byte(WireFaultKind::full);
+  const std::size_t room = std::min(wanted, stream_.room());
+  return full ? std::min(room, static_cast<std::size_t>(std::max<std::int64_t>(*full - taken_bytes_, 0))) : room;
+}
+
+std::size_t BoardMachine::room(std::uint64_t clock) {
+  catch_up(clock);
+  return power_lost_ ? 0 : most_taken(stream_.room());
+}
+
+std::size_t BoardMachine::take(std::span<const std::byte> stream, std::uint64_t clock) {
+  catch_up(clock);
+  const std::size_t taken = power_lost_ ? 0 : most_taken(stream.size());
+  if (taken == 0) {
+    return 0;
+  }
+  last_host_ = clock_;
+  stream_.append(stream.first(taken));
+  const std::int64_t end = taken_bytes_ + static_cast<std::int64_t>(taken);
+  while (const std::optional<WireFault> fault = planned_.at_byte(WireFaultKind::corrupt, taken_bytes_, end)) {
+    stream_.spoil(static_cast<std::size_t>(end - fault->byte));
+  }
+  taken_bytes_ = end;
+  if (stands_still()) {
+    make_room();
+  } else {
+    judge_all();
   }
   return taken;
 }
 
-void EmulatedBoard::Machine::open_interlock() {
-  catch_up();
+void BoardMachine::open_interlock(std::uint64_t clock) {
+  catch_up(clock);
   strike(DeviceFault::interlock);
 }
 
-BoardStatus EmulatedBoard::Machine::status() const {
+// Planned faults
+
+/// The one in the line that runs, if its slot comes by then.
+bool BoardMachine::meet_fault(std::uint64_t clock) {
+  const fpga::Settings::Outputs& s = registers_.settings();
+  const auto slot = static_cast<std::uint32_t>(std::min<std::int64_t>(due_->slot, s.slots_per_line - 1));
+  const std::uint64_t when = line_clock_ + std::uint64_t{slot} * s.seeds_per_slot;
+  if (when > clock) {
+    return false;
+  }
+  move_clock(std::max(clock_, when));
+  const WireFaultKind kind = due_->kind;
+  if (kind == WireFaultKind::power) {
+    cut_short(slot);
+    power_lost_ = true;
+  } else {
+    close_gate(kind == WireFaultKind::silence     ? DeviceFault::host_silence
+               : kind == WireFaultKind::interlock ? DeviceFault::interlock
+                                                  : DeviceFault::underrun,
+               slot);
+  }
+  return true;
+}
+
+/// What is planned for the next frame is done to it; true: it is there no more.
+bool BoardMachine::spoil_frame() {
+  const std::span<std::byte> frame = *stream_.next_frame(shape());
+  if (frame.size() == 1) {
+    return false;
+  }
+  const std::optional<WireFault> fault = planned_.at_frame(ordinal_of(stream_.next_place()));
+  if (!fault) {
+    return false;
+  }
+  switch (fault->kind) {
+    case WireFaultKind::lost:
+      frame_lost_ = true;
+      stream_.drop_frame(shape());
+      return true;
+    case WireFaultKind::duplicate:
+      stream_.repeat_frame(shape());
+      return false;
+    case WireFaultKind::shape:
+      LineStream::leave_line(frame);
+      return false;
+    default:
+      frame.back() ^= std::byte{1};
+      return false;
+  }
+}
+
+bool BoardMachine::rests() const noexcept {
+  return !control(kRun) && !axes_[0].has_segments() && !axes_[1].has_segments();
+}
+
+void BoardMachine::restore(const Counters& counters) noexcept {
+  executed_ = counters.executed;
+  place_ = counters.place;
+  const std::uint64_t lines = registers_.settings().lines_per_revolution;
+  const std::uint64_t line = place_.line + std::uint64_t{counters.taken} - counters.executed;
+  stream_.set_place(
+      {static_cast<std::uint32_t>(place_.revolution + line / lines), static_cast<std::uint32_t>(line % lines)},
+      counters.taken);
+}
+
+const BoardMachine::Setup& BoardMachine::setup_from_now() {
+  planned_.rebase(std::exchange(taken_bytes_, 0));
+  setup_.faults = planned_.left();
+  return setup_;
+}
+
+void BoardMachine::set_up(const Setup& setup) {
+  setup_.random = setup.random;
+  setup_.stands_still = setup.stands_still;
+  planned_ = WireFaults(setup.faults);
+  taken_bytes_ = 0;
+}
+
+BoardStatus BoardMachine::status() const {
   BoardStatus status;
   status.protocol_version = protocol::kProtocolVersion;
   status.state = faulty()                    ? BoardState::stopped
@@ -418,8 +588,7 @@ BoardStatus EmulatedBoard::Machine::status() const {
   status.fault = fault_;
   status.faults = faults_;
   status.gate_dark = faulty();
-  status.partial_line = closed_slot_ != 0;
-  status.power_up = options_.power_up;
+  status.partial_line = partial_;
   status.tick = (clock_ - go_clock_) * kTicksPerSeed;
   status.revolution = place_.revolution;
   status.line = place_.line;

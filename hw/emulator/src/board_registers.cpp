@@ -27,8 +27,12 @@ std::uint16_t BoardRegisters::write(std::uint8_t address, std::uint32_t value) n
 }
 
 std::uint32_t BoardRegisters::read(std::uint8_t address, const Live& live) noexcept {
-  const fpga::RegisterRead::Inputs in{
-      .address = address, .status = live.status, .level = live.level, .faults = live.faults};
+  const fpga::RegisterRead::Inputs in{.address = address,
+                                      .status = live.status,
+                                      .level = live.level,
+                                      .faults = live.faults,
+                                      .executed_lines = live.executed_lines,
+                                      .closed_slot = live.closed_slot};
   static_cast<void>(read_.step(in));
   const std::uint32_t word = read_.step(in).read_data;
   const bool rom = (address & 0xC0U) == fpga::kDescriptorRegister.address;

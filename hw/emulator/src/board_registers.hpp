@@ -18,6 +18,8 @@ class BoardRegisters {
     std::uint16_t status = 0;
     std::uint32_t level = 0;
     std::uint8_t faults = 0;
+    std::uint32_t executed_lines = 0;
+    std::uint32_t closed_slot = 0;
   };
 
   /// The commands that the write gives.

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
+
+#include "key_number.hpp"
 
 namespace gravure::emulator {
 namespace {
@@ -19,20 +20,6 @@ constexpr std::string_view kPlaces = "line=N (over the whole job) or revolution=
 
 Error bad_place(std::string_view text) {
   return {ErrorCode::bad_argument, "\"" + std::string(text) + "\": must be " + std::string(kPlaces)};
-}
-
-/// Takes "key=number" off the front of `text`; false where it is not there.
-bool take(std::string_view& text, std::string_view key, std::int64_t& number) {
-  if (text.substr(0, key.size()) != key) {
-    return false;
-  }
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data() + key.size(), end, number);
-  if (error != std::errc()) {
-    return false;
-  }
-  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
-  return true;
 }
 
 Result<void> check_index(std::string_view text, std::string_view what, std::int64_t value, std::int64_t count) {
@@ -53,8 +40,8 @@ Result<std::int64_t> parse_line_place(std::string_view text, const DeviceSetup& 
   std::string_view rest = text;
   std::int64_t revolution = 0;
   std::int64_t line = 0;
-  const bool has_revolution = take(rest, "revolution=", revolution);
-  if (!take(rest, has_revolution ? ",line=" : "line=", line) || !rest.empty()) {
+  const bool has_revolution = take_number(rest, "revolution=", revolution);
+  if (!take_number(rest, has_revolution ? ",line=" : "line=", line) || !rest.empty()) {
     return bad_place(text);
   }
   if (!has_revolution) {

@@ -13,6 +13,7 @@ namespace {
 using fpga::FrameParser;
 
 constexpr std::size_t kBeforeBits = 1 + FrameParser::kHeadBytes;
+constexpr std::size_t kFirstSlot = 17;
 
 std::uint32_t word(std::span<const std::byte> bytes, std::size_t at) noexcept {
   std::uint32_t value = 0;
@@ -27,7 +28,7 @@ std::size_t frame_bytes(const LineStream::Shape& shape) noexcept {
 }
 
 bool has_shape(std::span<const std::byte> frame, const LineStream::Shape& shape) noexcept {
-  const std::uint64_t first_slot = word(frame, 17);
+  const std::uint64_t first_slot = word(frame, kFirstSlot);
   const std::size_t bits = fpga::packed_bytes(shape.window_slots);
   const unsigned used = shape.window_slots % 8;
   const bool clean = used == 0 || (std::to_integer<unsigned>(frame[kBeforeBits + bits - 1]) & (0xFFU >> used)) == 0;
@@ -57,9 +58,9 @@ void LineStream::flush() noexcept {
   begin_ = judged_ = 0;
 }
 
-void LineStream::set_place(Place place) noexcept {
+void LineStream::set_place(Place place, std::uint32_t sequence) noexcept {
   next_ = place;
-  sequence_ = 0;
+  sequence_ = sequence;
 }
 
 std::optional<std::span<std::byte>> LineStream::next_frame(const Shape& shape) noexcept {
@@ -84,7 +85,7 @@ DeviceFault LineStream::judge_frame(const Shape& shape) {
   if (!checksum_fits(frame)) {
     return DeviceFault::checksum;
   }
-  lines_.push_back({next_, word(frame, 17), frame.size()});
+  lines_.push_back({next_, word(frame, kFirstSlot), frame.size()});
   judged_ += frame.size();
   ++sequence_;
   next_.line = next_.line + 1 >= shape.lines_per_revolution ? 0 : next_.line + 1;
@@ -95,6 +96,10 @@ DeviceFault LineStream::judge_frame(const Shape& shape) {
 void LineStream::drop_frame(const Shape& shape) {
   const auto first = bytes_.begin() + static_cast<std::ptrdiff_t>(judged_);
   bytes_.erase(first, first + static_cast<std::ptrdiff_t>(frame_bytes(shape)));
+}
+
+void LineStream::leave_line(std::span<std::byte> frame) noexcept {
+  frame[kFirstSlot + 3] = std::byte{0x80};
 }
 
 void LineStream::repeat_frame(const Shape& shape) {

@@ -39,10 +39,12 @@ class LineStream {
   std::size_t capacity() const noexcept { return capacity_; }
   /// At most room() bytes.
   void append(std::span<const std::byte> bytes);
+  /// Turns a bit over, in the byte so many before the end.
+  void spoil(std::size_t before_end) { bytes_[bytes_.size() - before_end] ^= std::byte{0x10}; }
   /// Drops all bytes and lines.
   void flush() noexcept;
-  /// The line that must come next, in frame 0.
-  void set_place(Place place) noexcept;
+  /// The line that must come next, in the frame of that number.
+  void set_place(Place place, std::uint32_t sequence = 0) noexcept;
   Place next_place() const noexcept { return next_; }
 
   /// The next frame as it lies there, or none while it is not whole; the first byte alone where that is no mark.
@@ -51,6 +53,8 @@ class LineStream {
   DeviceFault judge_frame(const Shape& shape);
   /// Leaves the next frame out.
   void drop_frame(const Shape& shape);
+  /// Puts the window of a frame behind the end of any line.
+  static void leave_line(std::span<std::byte> frame) noexcept;
   /// Puts a copy of the next frame behind it.
   void repeat_frame(const Shape& shape);
 

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "gravure/core/error.hpp"
+
+namespace gravure::emulator {
+
+/// A line that fired, or the part of it before the gate closed.
+struct FiredLine {
+  std::uint32_t revolution = 0;
+  std::uint32_t line = 0;
+  std::uint32_t first_slot = 0;     ///< of `bits`
+  std::span<const std::byte> bits;  ///< MSB first, what the gate let through; valid during the call
+};
+
+/// Gives every line that the board in a folder has fired, in order, also while it runs. bad_file where there is no such
+/// folder or a file is damaged, with its place; io; what `take` returns.
+Result<void> read_fired_lines(const std::string& folder, const std::function<Result<void>(const FiredLine&)>& take);
+
+}  // namespace gravure::emulator
