@@ -1,0 +1,263 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+#include <thread>
+
+#include "gravure/fpga/register_map.hpp"
+#include "gravure/session/job_parts.hpp"
+#include "gravure/session/run.hpp"
+#include "gravure/twin/exposure.hpp"
+#include "run_part.hpp"
+
+namespace gravure::session {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kFirstStatus{2'000};
+/// The watchdog closes the gate after a tenth of a second without a word from the host.
+constexpr std::int64_t kSilenceParts = 10;
+
+/// What the board says of itself now; a gate that is open is closed first.
+Result<BoardStatus> settled_status(DeviceLink& link) {
+  const auto until = std::chrono::steady_clock::now() + kFirstStatus;
+  std::optional<BoardStatus> newest;
+  bool closed = false;
+  while (std::chrono::steady_clock::now() < until) {
+    GRAVURE_TRY(const std::optional<BoardStatus> status, link.next_status(milliseconds(newest ? 20 : 100)));
+    if (status) {
+      newest = status;
+    } else if (newest && newest->state != BoardState::running) {
+      return *newest;
+    } else {
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    if (newest && newest->state == BoardState::running && !closed) {
+      GRAVURE_CHECK(link.write_register(fpga::kControlRegister.address, 0));
+      closed = true;
+    }
+  }
+  return Error{ErrorCode::timeout, link.identity().place +
+                                       ": the board does not say what state it is in: check cable "
+                                       "and power, switch it off and on"};
+}
+
+std::vector<ScheduleSegment> segments_of(const std::optional<AxisSpin>& spin) {
+  std::vector<ScheduleSegment> segments;
+  if (spin) {
+    for (const SpinSegment& segment : spin->down.segments) {
+      segments.push_back({segment.increment, static_cast<std::uint64_t>(segment.seeds)});
+    }
+  }
+  return segments;
+}
+
+class Run {
+ public:
+  Run(LineSource& program, DeviceLink& link, Journal& journal, const RunOptions& options, RunObserver& observer,
+      const CancelToken& cancel)
+      : program_(program),
+        link_(link),
+        journal_(journal),
+        options_(options),
+        observer_(observer),
+        cancel_(cancel),
+        plan_(program.header().plan),
+        parts_(job_parts(plan_)) {}
+
+  Result<RunReport> run() {
+    GRAVURE_CHECK(look_at_board());
+    GRAVURE_CHECK(find_beginning());
+    GRAVURE_CHECK(run_parts());
+    return report_;
+  }
+
+ private:
+  std::int64_t total() const { return plan_.job.revolutions * plan_.rotary.lines_per_revolution; }
+
+  Result<void> look_at_board() {
+    GRAVURE_CHECK(check_options(journal_, options_.resume));
+    GRAVURE_TRY(report_.board, shake_hands(link_));
+    GRAVURE_CHECK(check_board(report_.board, device_setup(plan_, 0, 0)));
+    report_.demand = link_demand(program_.header());
+    GRAVURE_CHECK(check_link_rate(report_.demand, link_.identity()));
+    GRAVURE_TRY(status_, settled_status(link_));
+    GRAVURE_TRY(report_.reserve_bytes,
+                reserve_bytes(options_.reserve_bytes, report_.demand, std::int64_t{status_.capacity_bytes}, total()));
+    return {};
+  }
+
+  Result<void> find_beginning() {
+    GRAVURE_TRY(const std::uint32_t mark, link_.read_register(fpga::kScheduleIncrementRegister.address));
+    BoardMemory memory{.serial = link_.identity().serial,
+                       .power_up = status_.power_up,
+                       .mark = mark,
+                       .executed_lines = status_.executed_lines,
+                       .closed_slot = {}};
+    if (status_.partial_line) {
+      memory.closed_slot = status_.closed_slot;
+    }
+    GRAVURE_TRY(report_.begun, where_to_begin(journal_, memory, options_.resume));
+    if (options_.resume.again && journal_.last()) {
+      GRAVURE_CHECK(journal_.begin_exposure());
+    }
+    if (status_.fault != DeviceFault::none) {
+      note("fault", "the board stood with the fault " + to_string(status_.fault) + ", which is acknowledged now");
+    }
+    if (report_.begun.uncertain) {
+      GRAVURE_CHECK(note_uncertain(*report_.begun.uncertain));
+    }
+    report_.executed = report_.begun.place;
+    report_.counts = {report_.begun.place.line, report_.begun.place.line, report_.begun.place.line, total()};
+    return {};
+  }
+
+  Result<void> note_uncertain(const Uncertain& lines) {
+    const UncertainPolicy policy = options_.resume.uncertain;
+    observer_.on_note(
+        fmt::format("uncertain: {} to {} may have been fired or not ({} lines): {}", line_text(plan_, lines.from.line),
+                    line_text(plan_, lines.end_line - 1), lines.end_line - lines.from.line,
+                    policy == UncertainPolicy::skip ? "skipped, nothing is fired twice and some of them may stay dark"
+                                                    : "repeated, all are fired and some of them may be fired twice"));
+    return journal_.uncertain(lines, to_string(policy));
+  }
+
+  void note(const std::string& kind, const std::string& text) {
+    observer_.on_note(text);
+    static_cast<void>(journal_.event(kind, text));
+  }
+
+  Result<void> run_parts() {
+    Place place = report_.begun.place;
+    while (place.line < total()) {
+      const JobPart& part = parts_[part_of(parts_, place.line)];
+      GRAVURE_CHECK(run_part(part, place));
+      if (report_.error) {
+        report_.end = report_.error->code == ErrorCode::cancelled ? RunEnd::stopped : RunEnd::failed;
+        return {};
+      }
+      place = {part.end_line, 0};
+      if (place.line < total()) {
+        report_.to_do = parts_[part_of(parts_, place.line)].begins_with;
+        if (!report_.to_do.empty()) {
+          note("part", "next: " + report_.to_do);
+        }
+        if (!report_.to_do.empty() && !options_.through) {
+          report_.end = RunEnd::part_end;
+          return {};
+        }
+      }
+    }
+    report_.to_do.clear();
+    return journal_.finish();
+  }
+
+  Result<void> run_part(const JobPart& part, const Place& place) {
+    GRAVURE_TRY(PartSettings settings, settings_for(part, place));
+    if (place.line != part.first_line) {
+      say_offset(place.line);
+    }
+    GRAVURE_CHECK(journal_.begin({.number = 0,
+                                  .device = link_.identity().place,
+                                  .serial = link_.identity().serial,
+                                  .power_up = status_.power_up,
+                                  .mark = settings.timing.mark,
+                                  .first = place,
+                                  .end_line = part.end_line,
+                                  .state = AttemptState::prepared,
+                                  .executed = place,
+                                  .sent_limit = place.line}));
+    PartOutcome outcome = PartRun(program_, link_, journal_, std::move(settings), options_, observer_, cancel_).run();
+    report_.counts = outcome.counts;
+    report_.executed = outcome.executed;
+    report_.exact = outcome.exact;
+    report_.sent_limit = outcome.sent_limit;
+    report_.fault = outcome.fault;
+    if (!outcome.ran) {
+      report_.error = outcome.ran.error();
+    }
+    return {};
+  }
+
+  Result<PartSettings> settings_for(const JobPart& part, const Place& place) {
+    report_.offset = resume_offset(plan_, part, place.line);
+    PartSettings settings;
+    settings.first = place;
+    settings.end_line = part.end_line;
+    settings.total_lines = total();
+    settings.seed_hz = plan_.clock.seed_hz;
+    settings.timing = {.slots_per_microvector = plan_.line.slots_per_microvector,
+                       .backward_later_ticks = plan_.line.offset_remainder_ticks,
+                       .lines_before = static_cast<std::uint64_t>(report_.offset.lines_before),
+                       .silence_seeds = static_cast<std::uint64_t>(plan_.clock.seed_hz / kSilenceParts),
+                       .mark = std::random_device{}() | 1U};
+    const bool flat = plan_.mode == Mode::flat;
+    const std::vector<ScheduleSegment> axis = segments_of(plan_.spin);
+    const std::vector<ScheduleSegment> carriage =
+        plan_.carriage ? segments_of(plan_.carriage->spin) : std::vector<ScheduleSegment>();
+    settings.timing.axis_backward = part.axis_backward;
+    settings.timing.lines = static_cast<std::uint64_t>(part.end_line - place.line);
+    if (flat || plan_.spin) {
+      settings.timing.axis_down = axis;
+      settings.timing.carriage_down = carriage;
+    }
+    const std::int64_t per_revolution = plan_.rotary.lines_per_revolution;
+    GRAVURE_TRY(settings.sequence,
+                protocol::start_sequence(device_setup(plan_, place.line / per_revolution, place.line % per_revolution),
+                                         settings.timing));
+    settings.stop = protocol::stop_sequence(axis, carriage);
+    settings.stop_time = stop_time(axis, carriage);
+    settings.frame_bytes = report_.demand.frame_bytes;
+    settings.capacity_bytes = std::int64_t{status_.capacity_bytes};
+    settings.reserve_bytes = std::min(report_.reserve_bytes, (part.end_line - place.line) * report_.demand.frame_bytes);
+    settings.power_up = status_.power_up;
+    return settings;
+  }
+
+  std::chrono::nanoseconds stop_time(const std::vector<ScheduleSegment>& axis,
+                                     const std::vector<ScheduleSegment>& carriage) const {
+    std::uint64_t longest = 0;
+    for (const std::vector<ScheduleSegment>* segments : {&axis, &carriage}) {
+      std::uint64_t seeds = 0;
+      for (const ScheduleSegment& segment : *segments) {
+        seeds += segment.seeds;
+      }
+      longest = std::max(longest, seeds);
+    }
+    const double seconds = static_cast<double>(longest) / static_cast<double>(plan_.clock.seed_hz);
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+  }
+
+  void say_offset(std::int64_t line) {
+    std::string text = fmt::format(
+        "going on at {} ({}): the axis is at its reference again and comes to that line; its drift until there, {:.6f} "
+        "um, is not made up for",
+        line_text(plan_, line), report_.begun.why, to_double(report_.offset.axis_um));
+    if (plan_.carriage) {
+      text += fmt::format("; the carriage begins {:.6f} mm from its start (drift {:.6f} um)",
+                          to_double(report_.offset.carriage_start_mm), to_double(report_.offset.carriage_um));
+    }
+    note("resume", text);
+  }
+
+  LineSource& program_;
+  DeviceLink& link_;
+  Journal& journal_;
+  const RunOptions& options_;
+  RunObserver& observer_;
+  const CancelToken& cancel_;
+  const Plan& plan_;
+  std::vector<JobPart> parts_;
+  BoardStatus status_;
+  RunReport report_;
+};
+
+}  // namespace
+
+Result<RunReport> run_program(LineSource& program, DeviceLink& link, Journal& journal, const RunOptions& options,
+                              RunObserver& observer, const CancelToken& cancel) {
+  return Run(program, link, journal, options, observer, cancel).run();
+}
+
+}  // namespace gravure::session
