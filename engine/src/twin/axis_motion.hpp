@@ -32,27 +32,26 @@ class AxisMotion {
     std::uint64_t fraction = 0;  ///< of the second accumulator, below its denominator
     std::uint64_t waiting = 0;   ///< ticks since the last step of the prescaler
   };
-  Phase phase_at(std::int64_t tick) const noexcept;
   /// One pulse slot on.
   void advance(Phase& phase) const noexcept;
-  /// How far the edges are behind the steady signal, in edges: 0 to below largest_lag_edges().
+  /// How far the edges are behind the steady signal, in edges: 0 to largest_lag_edges().
   double lag_edges(const Phase& phase) const noexcept;
   double largest_lag_edges() const noexcept { return largest_lag_edges_; }
 
-  /// A place where motion starts: the job's first line or, in flat mode, that of a pass.
+  /// Where motion starts, from rest or with the counter at 0: with the first line of the job, of a band, of a pass.
   struct Start {
     std::int64_t tick = 0;
-    double lag_um = 0;  ///< of the edges, then
   };
   Start start_of(std::int64_t revolution) const noexcept;
+  Phase phase_at(const Start& start, std::int64_t tick) const noexcept;
   /// What drift has added up to.
   double drift_um(const Start& start, std::int64_t tick) const noexcept {
     return drift_um_per_tick_ * static_cast<double>(tick - start.tick);
   }
   double drift_um_per_slot() const noexcept { return drift_um_per_tick_ * ticks_per_slot_; }
   /// Everything but the drift.
-  double off_um(const Start& start, const Phase& phase) const noexcept {
-    return !terms_.ab_step ? steady_um_ : start.lag_um - step_um_ * behind_edges(phase);
+  double off_um(const Phase& phase) const noexcept {
+    return !terms_.ab_step ? steady_um_ : lead_um_ - step_um_ * behind_edges(phase);
   }
   /// Between what off_um() is over the whole job; with a servo also what the rounding of edges to ticks may do to it,
   /// which off_um() leaves out.
@@ -67,18 +66,23 @@ class AxisMotion {
  private:
   struct Demand;
   static Result<AxisMotion> make(const Plan& plan, const Demand& demand, const AxisTerms& terms);
+  void take_start(const AbPlan& ab, const std::optional<AxisSpin>& spin, std::int64_t slot);
   double behind_edges(const Phase& phase) const noexcept;
-  void set_range(const Plan& plan) noexcept;
+  void set_range() noexcept;
 
   AxisTerms terms_;
   std::optional<Servo> servo_;
-  std::int64_t ticks_per_start_ = 0;  ///< flat: of a pass; else 0, it starts once
+  std::int64_t revolutions_per_start_ = 1;
+  std::int64_t ticks_per_revolution_ = 0;
   double ticks_per_slot_ = 1;
   std::uint64_t mask_ = 0;  ///< 2^(n-2) - 1
   std::uint64_t prescaler_ = 1;
   std::uint64_t increment_ = 0;
   std::uint64_t fraction_num_ = 0;
   std::uint64_t fraction_den_ = 1;
+  Phase start_;                    ///< what a spin-up leaves of an edge, of a count, of a step; else all 0
+  double lead_um_ = 0;             ///< the steady signal is so far ahead of the edges then
+  double late_edges_ = 0;          ///< edges come later than evenly spaced ones by so much, in the mean
   std::uint64_t slot_counts_ = 0;  ///< what the whole steps of a slot add
   std::uint64_t slot_fraction_ = 0;
   std::uint64_t slot_waiting_ = 0;

@@ -69,7 +69,7 @@ Result<void> fill_budget(const Plan& plan, const ErrorBudgetRequest& request, Er
     if (is_of_scanner(term) && request.trajectory == nullptr) {
       continue;
     }
-    GRAVURE_TRY(const ErrorModel model, ErrorModel::make(plan, request.trajectory, alone(twin, term)));
+    GRAVURE_TRY(const ErrorModel model, ErrorModel::make(plan, request.trajectory, alone(twin, term), request.back));
     const ErrorModel::Bound bound = model.job_bound().bound;
     value = term == ErrorTerm::defocus ? bound.defocus_um : bound.landing_um;
     if (is_of_scanner(term) && *value < kResidueUm) {
@@ -228,7 +228,7 @@ Result<ErrorBudget> error_budget(const std::function<Result<std::unique_ptr<Line
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, programs());
   const ProgramHeader& header = program->header();
   const Plan& plan = header.plan;
-  GRAVURE_TRY(const ErrorModel model, ErrorModel::make(plan, request.trajectory, request.twin));
+  GRAVURE_TRY(const ErrorModel model, ErrorModel::make(plan, request.trajectory, request.twin, request.back));
   const ErrorModel::JobBound worst = model.job_bound();
   ErrorBudget budget;
   budget.max_um = worst.bound.landing_um;

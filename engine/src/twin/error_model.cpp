@@ -1,5 +1,7 @@
 #include "error_model.hpp"
 
+#include "figure.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -22,8 +24,9 @@ Interval between(double a, double b) noexcept {
   return {std::min(a, b), std::max(a, b)};
 }
 
-Interval times(const Interval& range, double factor) noexcept {
-  return between(range.least * factor, range.most * factor);
+Interval product(const Interval& a, const Interval& b) noexcept {
+  const auto [least, most] = std::minmax({a.least * b.least, a.least * b.most, a.most * b.least, a.most * b.most});
+  return {least, most};
 }
 
 bool is_set(std::span<const std::byte> bits, std::int64_t index) noexcept {
@@ -52,18 +55,19 @@ struct ErrorModel::Line {
   const LineErrors* errors = nullptr;
   bool reverse = false;
   std::int64_t first_slot = 0;
-  std::int64_t first_tick = 0;  ///< of the first pulse
-  Shift shift;
-  double first_column_um = 0;          ///< of pixel 0
-  std::vector<double> rounded_off_um;  ///< helical: what rounding does to each order to U
+  std::int64_t first_tick = 0;            ///< of the first pulse
+  std::optional<ShiftedSurface> surface;  ///< none: where the job has it
+  double onwards_um = 0;                  ///< of a panel's line, by growth
+  double first_column_um = 0;             ///< of pixel 0
+  std::vector<double> rounded_off_um;     ///< helical: what rounding does to each order to U
   AxisMotion::Start axis_start;
   double axis_drift_um = 0;  ///< at the first pulse
   AxisMotion::Start carriage_start;
   double carriage_drift_um = 0;
 };
 
-Result<ErrorModel> ErrorModel::make(const Plan& plan, const scan::LineTrajectory* trajectory,
-                                    const TwinSettings& twin) {
+Result<ErrorModel> ErrorModel::make(const Plan& plan, const scan::LineTrajectory* trajectory, const TwinSettings& twin,
+                                    const scan::LineTrajectory* back) {
   ErrorModel model(plan);
   GRAVURE_TRY(model.axis_, AxisMotion::make(plan, axis_terms(twin)));
   if (plan.carriage) {
@@ -74,8 +78,12 @@ Result<ErrorModel> ErrorModel::make(const Plan& plan, const scan::LineTrajectory
   model.column_um_ = to_double(plan.line.pixel_pitch_um);
   model.scanner_ = {LineErrors::none(plan.line.pixels), LineErrors::none(plan.line.pixels)};
   if (trajectory != nullptr) {
-    model.scanner_ = scanner_errors(
-        *trajectory, {twin.galvo_resolution, twin.microvectors, twin.cross_scan, twin.lag, plan.carriage.has_value()});
+    ScannerTerms terms{twin.galvo_resolution, twin.microvectors, twin.cross_scan, twin.lag, plan.carriage.has_value()};
+    model.scanner_ = scanner_errors(*trajectory, terms);
+    if (back != nullptr) {
+      terms.backwards = true;
+      model.scanner_back_ = scanner_errors(*back, terms);
+    }
     model.count_um_ = trajectory->resolution_mm * 1000;
     model.set_rounding_range();
   }
@@ -86,26 +94,59 @@ Result<ErrorModel> ErrorModel::make(const Plan& plan, const scan::LineTrajectory
   if (twin.thermal.enabled) {
     model.growth_ = to_double(Rational(twin.thermal.temperature_change_k * twin.thermal.expansion_um_per_m_k)) * 1e-6;
   }
+  GRAVURE_CHECK(model.check_light());
   return model;
 }
 
-ErrorModel::Shift ErrorModel::shift_at(std::int64_t revolution, std::int64_t line) const {
-  Shift shift;
-  if (plan_.mode == Mode::flat) {  // grows away from line 0 of the image
-    const double from_fixed_um =
-        static_cast<double>(map_.image_line(revolution, line)) * to_double(plan_.rotary.line_pitch_um);
-    shift.onwards = growth_ * from_fixed_um * (map_.runs_backwards(revolution) ? -1 : 1);
-    return shift;
+/// Does every beam still meet the workpiece, wherever it has turned? The worst place is where it has gone straight out
+/// of the light, at a right angle to the beam.
+Result<void> ErrorModel::check_light() const {
+  const double moved_um = run_out_ ? run_out_->eccentricity_um : 0;
+  const double radius_um = radius_um_ * (1 + growth_);
+  if (plan_.mode == Mode::flat || (moved_um == 0 && growth_ == 0)) {
+    return {};
   }
-  shift.outwards = growth_ * radius_um_;
+  double farthest_um = 0;  // of a beam from the axis
+  for (const LineErrors& errors : scanner_) {
+    for (const double slope : {errors.slope_across_range.least, errors.slope_across_range.most}) {
+      farthest_um = std::max(farthest_um, radius_um_ * std::abs(slope) / std::hypot(1.0, slope) +
+                                              errors.across.magnitude() / std::hypot(1.0, slope));
+    }
+  }
+  if (farthest_um + moved_um < radius_um) {
+    return {};
+  }
+  return Error{
+      ErrorCode::out_of_range,
+      "twin.run_out.eccentricity_um and twin.thermal bring the workpiece out of the light: beams pass its axis "
+      "at up to " +
+          figure(farthest_um) + " um, moved by " + figure(moved_um) + " um, and its radius is " + figure(radius_um) +
+          " um; less eccentricity or scanner.offset_deg would fit"};
+}
+
+/// How the workpiece lies at a line against where the job has it.
+ShiftedSurface ErrorModel::surface_at(std::int64_t line) const {
+  ShiftedSurface surface{radius_um_, growth_ * radius_um_, 0, 0};
   if (run_out_) {
     const double from_high_spot =
         2 * kPi * static_cast<double>(line) / static_cast<double>(plan_.rotary.lines_per_revolution) -
         run_out_->angle_rad;
-    shift.outwards += run_out_->eccentricity_um * std::cos(from_high_spot);
-    shift.onwards -= run_out_->eccentricity_um * std::sin(from_high_spot);
+    surface.outwards_um = run_out_->eccentricity_um * std::cos(from_high_spot);
+    surface.onwards_um = -run_out_->eccentricity_um * std::sin(from_high_spot);
   }
-  return shift;
+  return surface;
+}
+
+/// A panel grows away from line 0 of the image.
+double ErrorModel::flat_growth_um(std::int64_t revolution, std::int64_t line) const {
+  const double from_fixed_um =
+      static_cast<double>(map_.image_line(revolution, line)) * to_double(plan_.rotary.line_pitch_um);
+  return growth_ * from_fixed_um * (map_.runs_backwards(revolution) ? -1 : 1);
+}
+
+const LineErrors& ErrorModel::errors_of(std::int64_t revolution, bool reverse) const noexcept {
+  const ScannerErrors& both = scanner_back_ && map_.runs_backwards(revolution) ? *scanner_back_ : scanner_;
+  return both[reverse ? 1 : 0];
 }
 
 /// How far U stands back for a helical line that starts on a fraction of a column.
@@ -146,13 +187,17 @@ void ErrorModel::set_rounding_range() {
 ErrorModel::Line ErrorModel::line_at(std::int64_t revolution, std::int64_t line) const {
   const bool reverse = line_is_reverse(plan_, revolution, line);
   Line result;
-  result.errors = &scanner_[reverse ? 1 : 0];
+  result.errors = &errors_of(revolution, reverse);
   result.reverse = reverse;
   result.first_slot = reverse ? plan_.line.reverse_first_slot : plan_.line.forward_first_slot;
   result.first_tick = (revolution * plan_.rotary.lines_per_revolution + line) * plan_.line.ticks +
                       result.first_slot * plan_.clock.ticks_per_slot +
                       (reverse ? plan_.line.offset_remainder_ticks : 0);
-  result.shift = shift_at(revolution, line);
+  if (plan_.mode == Mode::flat) {
+    result.onwards_um = flat_growth_um(revolution, line);
+  } else if (run_out_ || growth_ != 0) {
+    result.surface = surface_at(line);
+  }
   const std::int64_t column =
       plan_.carriage
           ? map_.column_after((revolution - plan_.carriage->layers) * plan_.rotary.lines_per_revolution + line)
@@ -178,12 +223,15 @@ inline PulseError ErrorModel::landed(const Line& line, std::int64_t index, const
   const auto i = static_cast<std::size_t>(index);
   const auto slots = static_cast<double>(index);
   const double pixel = line.reverse ? static_cast<double>(plan_.line.pixels - 1) - slots : slots;
+  ShiftedSurface::Hit hit{errors.across_um[i], 0};
+  if (line.surface) {
+    hit = line.surface->hit(errors.across_um[i], errors.slope_across[i]);
+  }
   PulseError error;
-  error.across_um = errors.across_um[i] + axis_->off_um(line.axis_start, axis) + line.axis_drift_um +
-                    axis_->drift_um_per_slot() * slots - line.shift.onwards +
-                    line.shift.outwards * errors.slope_across[i];
-  error.along_um = errors.along_um[i] - growth_ * (line.first_column_um + pixel * column_um_) +
-                   line.shift.outwards * errors.slope_along[i];
+  error.across_um =
+      hit.across_um + axis_->off_um(axis) + line.axis_drift_um + axis_->drift_um_per_slot() * slots - line.onwards_um;
+  error.along_um =
+      errors.along_um[i] - growth_ * (line.first_column_um + pixel * column_um_) + hit.rise_um * errors.slope_along[i];
   if (!line.rounded_off_um.empty()) {
     const RoundedOrders& orders = errors.rounded;
     const std::size_t before = orders.order_before[i];
@@ -191,10 +239,12 @@ inline PulseError ErrorModel::landed(const Line& line, std::int64_t index, const
     error.along_um += line.rounded_off_um[before] * (1 - share) + line.rounded_off_um[before + 1] * share;
   }
   if (carriage_) {
-    error.along_um += carriage_->off_um(line.carriage_start, carriage) + line.carriage_drift_um +
-                      carriage_->drift_um_per_slot() * slots;
+    error.along_um += carriage_->off_um(carriage) + line.carriage_drift_um + carriage_->drift_um_per_slot() * slots;
   }
-  error.defocus_um = errors.defocus_um[i] + line.shift.outwards;
+  // Along the beam it is as much further to a surface that rises as the beam leans.
+  error.defocus_um =
+      errors.defocus_um[i] + hit.rise_um * std::sqrt(1 + errors.slope_across[i] * errors.slope_across[i] +
+                                                     errors.slope_along[i] * errors.slope_along[i]);
   return error;
 }
 
@@ -202,16 +252,17 @@ PulseError ErrorModel::pulse_error(std::int64_t revolution, std::int64_t line, s
   const Line here = line_at(revolution, line);
   const std::int64_t index = here.reverse ? plan_.line.pixels - 1 - pixel : pixel;
   const std::int64_t tick = here.first_tick + index * plan_.clock.ticks_per_slot;
-  const PulseError error =
-      landed(here, index, axis_->phase_at(tick), carriage_ ? carriage_->phase_at(tick) : AxisMotion::Phase{});
+  const PulseError error = landed(here, index, axis_->phase_at(here.axis_start, tick),
+                                  carriage_ ? carriage_->phase_at(here.carriage_start, tick) : AxisMotion::Phase{});
   return {-error.along_um, -error.across_um, error.defocus_um};
 }
 
 void ErrorModel::simulate(std::int64_t revolution, std::int64_t line, std::span<const std::byte> fired,
                           PulseSums& sums) const {
   const Line here = line_at(revolution, line);
-  AxisMotion::Phase axis = axis_->phase_at(here.first_tick);
-  AxisMotion::Phase carriage = carriage_ ? carriage_->phase_at(here.first_tick) : AxisMotion::Phase{};
+  AxisMotion::Phase axis = axis_->phase_at(here.axis_start, here.first_tick);
+  AxisMotion::Phase carriage =
+      carriage_ ? carriage_->phase_at(here.carriage_start, here.first_tick) : AxisMotion::Phase{};
   double squares = 0;
   double worst = -1;
   std::int64_t worst_index = 0;
@@ -246,16 +297,22 @@ ErrorModel::Bound ErrorModel::line_bound(std::int64_t revolution, std::int64_t l
     return Interval{axis.range().least_um, axis.range().most_um} +
            between(drift_um, drift_um + axis.drift_um_per_slot() * last);
   };
-  const Interval across = errors.across + moving(*axis_, here.axis_drift_um) + at(-here.shift.onwards) +
-                          times(errors.slope_across_range, here.shift.outwards);
+  ShiftedSurface::Range hits{errors.across, {}};
+  if (here.surface) {
+    hits = here.surface->range(errors.across, errors.slope_across_range);
+  }
+  const Interval across = hits.across_um + moving(*axis_, here.axis_drift_um) + at(-here.onwards_um);
   // Columns grow apart from column 0, wherever in the image the line lies.
   const double farthest_um = static_cast<double>(image_columns(plan_) - 1) * column_um_;
-  Interval along = errors.along + between(0, -growth_ * farthest_um) +
-                   times(errors.slope_along_range, here.shift.outwards) + rounding_range_;
+  Interval along = errors.along + between(0, -growth_ * farthest_um) + product(hits.rise_um, errors.slope_along_range) +
+                   rounding_range_;
   if (carriage_) {
     along = along + moving(*carriage_, here.carriage_drift_um);
   }
-  return {std::hypot(across.magnitude(), along.magnitude()), (errors.defocus + at(here.shift.outwards)).magnitude()};
+  const double leaning = std::sqrt(1 + std::pow(errors.slope_across_range.magnitude(), 2) +
+                                   std::pow(errors.slope_along_range.magnitude(), 2));
+  return {std::hypot(across.magnitude(), along.magnitude()),
+          (errors.defocus + product(hits.rise_um, {1, leaning})).magnitude()};
 }
 
 ErrorModel::JobBound ErrorModel::job_bound() const {

@@ -10,6 +10,7 @@
 #include "gravure/core/exposure_map.hpp"
 #include "gravure/twin/error_budget.hpp"
 #include "scanner_errors.hpp"
+#include "shifted_surface.hpp"
 
 namespace gravure {
 
@@ -34,8 +35,11 @@ struct PulseSums {
 /// Where the light of a plan's pulses lands, with the terms that are switched on.
 class ErrorModel {
  public:
-  /// `trajectory`: none where no scanner is known. Fails with out_of_range where the A-B registers are none.
-  static Result<ErrorModel> make(const Plan& plan, const scan::LineTrajectory* trajectory, const TwinSettings& twin);
+  /// `trajectory`: none where no scanner is known. `back`: of the passes in which the stage of a flat job comes back;
+  /// none: as the others. Fails with out_of_range where the A-B registers are none, and where run-out and growth bring
+  /// the workpiece out of the light.
+  static Result<ErrorModel> make(const Plan& plan, const scan::LineTrajectory* trajectory, const TwinSettings& twin,
+                                 const scan::LineTrajectory* back = nullptr);
 
   PulseError pulse_error(std::int64_t revolution, std::int64_t line, std::int64_t pixel) const;
   /// Every pulse of a line; `fired`: in order of time, MSB first; empty: all of the window.
@@ -59,17 +63,16 @@ class ErrorModel {
 
  private:
   struct Line;
-  struct Shift {  ///< of the surface against where the job has it, in um
-    double outwards = 0;
-    double onwards = 0;  ///< the way the lines follow each other
-  };
   struct RunOut {
     double eccentricity_um = 0;
     double angle_rad = 0;
   };
 
   explicit ErrorModel(const Plan& plan) : plan_(plan), map_(plan) {}
-  Shift shift_at(std::int64_t revolution, std::int64_t line) const;
+  ShiftedSurface surface_at(std::int64_t line) const;
+  double flat_growth_um(std::int64_t revolution, std::int64_t line) const;
+  const LineErrors& errors_of(std::int64_t revolution, bool reverse) const noexcept;
+  Result<void> check_light() const;
   double column_shift_um(std::int64_t revolution, std::int64_t line) const;
   void set_rounding_range();
   Line line_at(std::int64_t revolution, std::int64_t line) const;
@@ -81,8 +84,9 @@ class ErrorModel {
   std::optional<AxisMotion> axis_;
   std::optional<AxisMotion> carriage_;
   ScannerErrors scanner_;
-  double count_um_ = 0;      ///< of the scanner
-  Interval rounding_range_;  ///< helical: of the orders to U, on all lines
+  std::optional<ScannerErrors> scanner_back_;  ///< flat: of the passes in which the stage comes back
+  double count_um_ = 0;                        ///< of the scanner
+  Interval rounding_range_;                    ///< helical: of the orders to U, on all lines
   std::optional<RunOut> run_out_;
   double growth_ = 0;  ///< of every length, by temperature
   double radius_um_ = 0;

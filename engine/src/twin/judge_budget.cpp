@@ -56,6 +56,15 @@ void judge_defocus(const ErrorBudget& budget, const Rational& limit_um, VerifyRe
 
 }  // namespace
 
+void judge_bound(const ErrorBudget& budget, VerifyReport& report) {
+  constexpr double kArithmetic = 1e-9;
+  if (budget.simulated_max_um > budget.max_um * (1 + kArithmetic) + kArithmetic) {
+    report.violations.push_back("the pulse at " + text_of(budget.worst) + " lands " + figure(budget.simulated_max_um) +
+                                " um from its target, beyond the bound of " + figure(budget.max_um) +
+                                " um for all pulses: the error budget contradicts itself, trust neither figure");
+  }
+}
+
 std::optional<scan::JobTrajectory> judge_scanner(const ProgramHeader& header, VerifyReport& report) {
   if (!header.plan.scanner) {
     return std::nullopt;
@@ -81,13 +90,19 @@ Result<void> judge_budget(const std::function<Result<std::unique_ptr<LineSource>
   request.twin = asked.twin;
   request.threads = options.threads;
   request.cancel = options.cancel;
-  request.trajectory = trajectory ? &trajectory->of_revolution(0) : nullptr;
+  if (trajectory) {
+    request.trajectory = &trajectory->of_revolution(0);
+    if (trajectory->plan().mode == Mode::flat && trajectory->plan().job.revolutions > 1) {
+      request.back = &trajectory->of_revolution(1);
+    }
+  }
   Result<ErrorBudget> budget = error_budget(programs, request);
   if (!budget && budget.error().code == ErrorCode::out_of_range) {
     report.violations.push_back("no error budget: " + budget.error().message);
     return {};
   }
   GRAVURE_TRY(report.error, std::move(budget));
+  judge_bound(*report.error, report);
   report.notes.insert(report.notes.end(), report.error->notes.begin(), report.error->notes.end());
   if (asked.landing_um) {
     judge_landing(*report.error, *asked.landing_um, trajectory.has_value(), report);

@@ -13,6 +13,9 @@ namespace gravure {
 /// follow, and stored set-points that are not those of the plan, are violations.
 std::optional<scan::JobTrajectory> judge_scanner(const ProgramHeader& header, VerifyReport& report);
 
+/// A simulated pulse beyond the bound is a violation: one of the two is wrong.
+void judge_bound(const ErrorBudget& budget, VerifyReport& report);
+
 /// Adds the error budget to a report, with what its limits have to say; a limit that cannot be judged is a violation.
 /// Fails where the program cannot be read, and on cancellation.
 Result<void> judge_budget(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,

@@ -97,12 +97,13 @@ void fill(const LineTrajectory& trajectory, Direction direction, const ScannerTe
                                           mirrors_at(trajectory, direction, slot, ideal))
                           .towards_head;
     const double rise = beam.dot(geometry.surface_normal);
+    const double onwards = terms.backwards ? -1 : 1;
     const auto at = static_cast<std::size_t>(i);
     errors.along_um[at] = error.along_um;
-    errors.across_um[at] = error.across_um;
+    errors.across_um[at] = onwards * error.across_um;
     errors.defocus_um[at] = path.defocus_um;
     errors.slope_along[at] = beam.dot(along) / rise;
-    errors.slope_across[at] = beam.dot(across) / rise;
+    errors.slope_across[at] = onwards * beam.dot(across) / rise;
   }
   if (later) {
     errors.rounded = orders_of(trajectory, direction, terms);

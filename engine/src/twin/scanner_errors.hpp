@@ -16,6 +16,8 @@ struct ScannerTerms {
   bool lag = false;
   /// Lines start on different fractions of a column, which U takes up: rounding its orders is left to RoundedOrders.
   bool shifted_lines = false;
+  /// The stage of a flat job comes back: across is the way the lines follow each other, towards lower image lines.
+  bool backwards = false;
 };
 
 struct Interval {

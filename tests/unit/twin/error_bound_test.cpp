@@ -28,6 +28,11 @@ Job random_job(Dice& dice) {
   job.carriage = {ratio(dice.between(20, 200), 10),     dice.between(1, 3), ratio(dice.between(50, 400), 10),
                   static_cast<int>(dice.between(3, 8)), 41'000'000,         {}};
   job.stage = {lines, 8, ratio(dice.between(50, 400), 10), static_cast<int>(dice.between(3, 8)), 2'000'000, {}};
+  if (dice.coin()) {  // from rest, the axes together
+    job.rotary.limits = {3'600'000, 36'000'000, 360'000'000};
+    job.carriage.limits = {10'000, 1'000'000, 100'000'000};
+    job.stage.limits = job.carriage.limits;
+  }
   if (job.mode != Mode::helical && dice.coin()) {
     job.scanner.field_mm = ratio(8 * dice.between(12, 30) + 7, 1000);
   }
@@ -79,7 +84,7 @@ bool samples_edges(const Plan& plan, const AbPlan& ab) {
   return true;
 }
 
-TwinSettings with_term(Dice& dice, std::size_t term) {
+TwinSettings with_term(Dice& dice, std::size_t term, const Plan& plan) {
   TwinSettings twin = no_terms();
   const bool all = term == kErrorTerms;
   const auto on = [all, term](ErrorTerm which) { return all || term == static_cast<std::size_t>(which); };
@@ -91,7 +96,8 @@ TwinSettings with_term(Dice& dice, std::size_t term) {
   twin.lag = on(ErrorTerm::lag);
   twin.defocus = on(ErrorTerm::defocus);
   twin.servo = {on(ErrorTerm::servo), dice.between(5, 50'000), ratio(dice.between(5, 200), 100)};
-  twin.run_out = {on(ErrorTerm::run_out), ratio(dice.between(1, 300), 10), dice.between(-360, 360)};
+  const Rational radius_um = plan.rotary.circumference_um / (2 * pi());
+  twin.run_out = {on(ErrorTerm::run_out), radius_um * ratio(dice.between(1, 30), 100), dice.between(-360, 360)};
   twin.thermal = {on(ErrorTerm::thermal), dice.between(-50, 50), dice.between(5, 20)};
   return twin;
 }
@@ -122,9 +128,10 @@ TEST(ErrorBound, HoldsEveryPulseAndIsWithinItsFactorForEachTermAndForAll) {
       head.lens = kinematics::Lens::f_theta;
       head.tilt_rad_per_mm = 0.01;
     }
-    const auto trajectory = trajectory_of(plan, head, {dice.coin(), dice.coin(), {}});
+    const double offset_deg = dice.coin() ? 0 : static_cast<double>(dice.between(-30, 30));
+    const auto trajectory = trajectory_of(plan, head, {dice.coin(), dice.coin(), {}}, offset_deg);
     for (std::size_t term = 0; term <= kErrorTerms; ++term) {
-      const TwinSettings twin = with_term(dice, term);
+      const TwinSettings twin = with_term(dice, term, plan);
       const ErrorModel model = model_of(plan, &trajectory, twin);
       const PulseSums sums = simulated(plan, model);
       const double most = std::sqrt(std::max(0.0, sums.worst_um2));

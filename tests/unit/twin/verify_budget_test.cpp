@@ -2,6 +2,7 @@
 
 #include "budget_support.hpp"
 #include "gravure/scan/job_trajectory.hpp"
+#include "judge_budget.hpp"
 #include "twin_support.hpp"
 
 /// Landing errors from the job through plan, program and device to the report.
@@ -161,6 +162,18 @@ TEST(VerifyBudget, OneSetPointThatIsNotThePlansIsAViolation) {
     }
   }
   EXPECT_NE(violations_of({planned[0]}), "") << "a kind of line is missing";
+}
+
+TEST(VerifyBudget, ASimulatedPulseBeyondTheBoundIsAViolation) {
+  ErrorBudget budget;
+  budget.max_um = budget.simulated_max_um = 2.5;
+  budget.worst = {3, 7, 11};
+  VerifyReport report;
+  judge_bound(budget, report);
+  EXPECT_TRUE(report.violations.empty());
+  budget.simulated_max_um = 2.501;
+  judge_bound(budget, report);
+  expect_violation(report, "revolution 3, line 7, slot 11 lands 2.501 um from its target, beyond the bound of 2.5 um");
 }
 
 TEST(VerifyBudget, LinesTheScannerCannotFollowAreAViolation) {

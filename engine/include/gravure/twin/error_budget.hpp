@@ -65,6 +65,7 @@ struct ErrorBudget {
 struct ErrorBudgetRequest {
   TwinSettings twin;
   const scan::LineTrajectory* trajectory = nullptr;  ///< none: the terms of the scanner cannot be known
+  const scan::LineTrajectory* back = nullptr;        ///< of the passes in which the stage of a flat job comes back
   std::int64_t most_pulses = 200'000'000;            ///< about so many are simulated, one revolution in part at least
   int threads = 0;                                   ///< 0: one for each processor
   const CancelToken* cancel = nullptr;
