@@ -217,14 +217,14 @@ bool roller() {
                     .slots_per_line = 3909,
                     .window_slots = 3500,
                     .lines_per_revolution = 27'489,
-                    .revolutions = 100};
+                    .end_revolution = 100};
   std::vector<std::byte> bits(fpga::packed_bytes(3500), std::byte{0xA5});
   bits.back() = std::byte{0xA0};  // four slots of the last byte are past the window
   FiredBytes pins;
   emulator::EmulatedDevice device(&pins);
   bool good = static_cast<bool>(device.configure(setup));
   const double start = cpu_seconds();
-  for (std::int64_t revolution = 0; good && revolution < setup.revolutions; ++revolution) {
+  for (std::int64_t revolution = 0; good && revolution < setup.end_revolution; ++revolution) {
     for (std::int64_t line = 0; good && line < setup.lines_per_revolution; ++line) {
       LineFrame frame{.revolution = revolution, .line = line, .first_slot = 200, .bits = bits};
       frame.crc32c = frame_crc32c(frame);

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "emulate.hpp"
 #include "emulate_rtl.hpp"
+#include "gravure/core/board_runs.hpp"
 #include "gravure/formats/waves.hpp"
 #include "gravure/fpga/edge_stream.hpp"
 #include "program_files.hpp"
@@ -108,6 +110,28 @@ Result<std::uint64_t> write_csv_edges(const std::string& path, const fpga::AbReg
                 formats::append_csv_edge(output.text(), edge);
                 return Result<void>();
               }));
+  GRAVURE_CHECK(output.commit());
+  return edges;
+}
+
+Result<std::uint64_t> write_run_edges(const std::string& path, const Plan& plan, TickWindow window) {
+  const fpga::AbRegisters registers{plan.ab.counter_bits, plan.ab.prescaler, plan.ab.increment, plan.ab.fraction_num,
+                                    plan.ab.fraction_den};
+  GRAVURE_TRY(TextOutput output, TextOutput::create(path));
+  formats::append_csv_header(output.text());
+  std::uint64_t edges = 0;
+  const auto run_ticks = static_cast<std::uint64_t>(run_with(plan, 0).ticks);
+  for (std::uint64_t begin = window.first / run_ticks * run_ticks; begin < window.last; begin += run_ticks) {
+    const std::int64_t revolution = static_cast<std::int64_t>(begin) / plan.rotary.ticks_per_revolution;
+    const bool backward = run_with(plan, revolution).backward;
+    const TickWindow part{std::max(window.first, begin) - begin, std::min(window.last - begin, run_ticks)};
+    GRAVURE_TRY(const std::uint64_t more, write_each(registers, part, output, [&](const fpga::AbEdge& edge) {
+                  const fpga::AbPins pins = backward ? fpga::AbPins{edge.pins.b, edge.pins.a} : edge.pins;
+                  formats::append_csv_edge(output.text(), {edge.clock + begin, pins});
+                  return Result<void>();
+                }));
+    edges += more;
+  }
   GRAVURE_CHECK(output.commit());
   return edges;
 }

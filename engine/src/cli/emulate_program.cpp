@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 
 #include "emulate.hpp"
 #include "emulate_rtl.hpp"
+#include "emulate_runs.hpp"
+#include "gravure/core/spin_phase.hpp"
 #include "gravure/emulator/board_host.hpp"
 #include "gravure/emulator/emulated_device.hpp"
 #include "gravure/emulator/faults.hpp"
@@ -157,6 +160,9 @@ Result<void> check_run(const Mistakes& mistakes, std::int64_t last_line) {
   return {};
 }
 
+/// Before the first line of a run; false: the board takes no more.
+using RunStart = std::function<Result<bool>(const DeviceSetup& setup)>;
+
 /// The lines a window touches, and those from the first fault on, which may reach into it.
 Lines lines_of(const Plan& plan, TickWindow window, const Mistakes& mistakes) {
   const std::int64_t most = plan.job.revolutions * plan.rotary.lines_per_revolution - 1;
@@ -170,7 +176,9 @@ Lines lines_of(const Plan& plan, TickWindow window, const Mistakes& mistakes) {
   return lines;
 }
 
-Result<void> send_lines(LineSource& program, Lines lines, LineDevice& device) {
+/// Runs the lines, with `start` before the first of each run of the board. A fault that stands at the end of a run
+/// keeps the next from starting.
+Result<void> send_lines(LineSource& program, Lines lines, LineDevice& device, const RunStart& start) {
   const ProgramHeader& header = program.header();
   const std::int64_t per_revolution = header.plan.rotary.lines_per_revolution;
   SomeLines some(device, lines, per_revolution);
@@ -182,6 +190,12 @@ Result<void> send_lines(LineSource& program, Lines lines, LineDevice& device) {
     const std::int64_t layer = header.layer_of_revolution[static_cast<std::size_t>(r)];
     const std::int64_t first = r == first_revolution ? lines.first % per_revolution : 0;
     const std::int64_t last = r == last_revolution ? lines.last % per_revolution : per_revolution - 1;
+    if (r == first_revolution || run_with(header.plan, r).first_revolution == r) {
+      GRAVURE_TRY(const bool started, start(device_setup(header.plan, r, first)));
+      if (!started) {
+        break;
+      }
+    }
     for (std::int64_t k = first / program.lines_per_chunk(); k <= last / program.lines_per_chunk(); ++k) {
       if (cancel_token().cancelled()) {
         return Error{ErrorCode::cancelled, "stopped before the end of the program"};
@@ -216,15 +230,18 @@ Json dark_json(const std::vector<DarkLines>& dark, const Plan& plan) {
   return list;
 }
 
-/// A-B edges of the axis per workpiece revolution divide its exact position: whole turns and what is left.
-Rational turns_after(const Plan& plan, std::uint64_t tick) {
-  const fpga::AbRegisters registers = registers_of(plan.ab);
-  const fpga::AbPosition at = fpga::position_after(registers, tick);
-  const Integer counts =
-      (Integer(static_cast<std::uint64_t>(at.counts >> 64U)) << 64) + static_cast<std::uint64_t>(at.counts);
-  const Rational exact =
-      Rational(counts) + Rational(Integer(at.accumulator)) / Rational(Integer(registers.fraction_den));
-  return exact / Rational(Integer(1) << (registers.bits - 2)) / plan.rotary.edges_per_revolution;
+/// A-B edges of the axis per workpiece revolution divide its exact way in the runs up to a tick, without ramps: whole
+/// turns and what is left.
+Rational turns_after(const Plan& plan, std::int64_t tick) {
+  const auto turns = [&plan](std::int64_t ticks) {
+    const SpinPhase at = phase_after(plan.ab, plan.ab.increment, ticks, {});
+    const Rational exact =
+        Rational(at.counts) + Rational(Integer(at.accumulator)) / Rational(Integer(plan.ab.fraction_den));
+    return Rational(exact / Rational(Integer(1) << static_cast<unsigned>(plan.ab.counter_bits - 2)) /
+                    plan.rotary.edges_per_revolution);
+  };
+  const std::int64_t run_ticks = run_with(plan, 0).ticks;
+  return turns(run_ticks) * (tick / run_ticks) + turns(tick % run_ticks);
 }
 
 /// The frames of some lines through the wires of a board.
@@ -249,7 +266,7 @@ Result<Json> lines_on_rtl(LineSource& program, Lines lines, const DeviceSetup& s
   GRAVURE_CHECK(host.start_lines(setup, {.slots_per_microvector = line.slots_per_microvector,
                                          .backward_later_ticks = line.offset_remainder_ticks}));
   WireLink link(host);
-  GRAVURE_CHECK(send_lines(program, lines, link));
+  GRAVURE_CHECK(send_lines(program, lines, link, [](const DeviceSetup&) -> Result<bool> { return true; }));
   GRAVURE_CHECK(host.finish());
   GRAVURE_CHECK(boards.check());
   if (boards.fault() != 0) {
@@ -270,7 +287,9 @@ Result<Json> lines_on_rtl(LineSource& program, Lines lines, const DeviceSetup& s
 struct Run {
   TickWindow window;
   Lines lines;
-  DeviceStatus status;
+  DeviceStatus status;  ///< of the last run
+  std::int64_t executed = 0;
+  std::vector<EmulatedRun> runs;
   std::int64_t fired = 0;
   std::vector<DarkLines> dark;
   std::optional<Json> rtl;
@@ -286,7 +305,7 @@ Json spin_up_json(const SpinPlan& up, const AxisState& state) {
           {"ticks", json_integer(Integer(up.ticks))},
           {"edges", json_integer(Integer(state.edges))},
           {"planned_counts", json_integer(up.counts)},
-          {"counts", json_integer(Integer((Integer(state.counts_high) << 64U) + Integer(state.counts_low)))}};
+          {"counts", json_integer(counts_of(state))}};
 }
 
 std::string spin_up_text(const char* name, const SpinPlan& up, const AxisState& state) {
@@ -300,31 +319,31 @@ std::string spin_up_text(const char* name, const SpinPlan& up, const AxisState& 
 
 void print_run(const EmulateOptions& options, const Command& command, const Plan& plan, const Run& run) {
   const DeviceStatus& status = run.status;
-  const auto end = static_cast<std::uint64_t>(status.tick);
-  const Rational turns = turns_after(plan, end);
+  const Rational turns = turns_after(plan, status.tick);
+  const Integer edges = edges_to_tick(plan, status.tick);
   std::int64_t dark_lines = 0;
   for (const DarkLines& lines : run.dark) {
     dark_lines += lines.last - lines.first + 1;
   }
   if (command.json) {
-    const fpga::AbRegisters registers = registers_of(plan.ab);
-    Json axis = axis_json(registers, end);
+    Json axis = run_axis_json(plan, run.runs.back());
     axis[plan.mode == Mode::flat ? "passes" : "workpiece_turns"] = json_ratio(turns);
     Json result = {{"program", options.program},
-                   {"lines", status.lines_executed},
+                   {"lines", run.executed},
                    {"ticks", json_integer(Integer(status.tick))},
                    {"planned_ticks", json_integer(Integer(plan.job.ticks))},
                    {"fired_slots", json_integer(Integer(run.fired))},
-                   {"edges", json_integer(Integer(status.axis.edges))},
-                   {"axis", axis}};
+                   {"edges", json_integer(edges)},
+                   {"axis", axis},
+                   {"runs", runs_json(plan, run.runs)}};
     if (plan.carriage) {
-      result["carriage"] = axis_json(registers_of(plan.carriage->ab), end);
+      result["carriage"] = axis_json(registers_of(plan.carriage->ab), static_cast<std::uint64_t>(status.tick));
     }
     if (plan.spin) {
-      result["spin_up"] = spin_up_json(plan.spin->up, status.axis_spun_up);
+      result["spin_up"] = spin_up_json(plan.spin->up, run.runs.front().status.axis_spun_up);
     }
     if (plan.carriage && plan.carriage->spin) {
-      result["carriage_spin_up"] = spin_up_json(plan.carriage->spin->up, status.carriage_spun_up);
+      result["carriage_spin_up"] = spin_up_json(plan.carriage->spin->up, run.runs.front().status.carriage_spun_up);
     }
     result.update({{"fault", to_string(status.fault)},
                    {"fault_register", static_cast<int>(status.fault)},
@@ -343,8 +362,8 @@ void print_run(const EmulateOptions& options, const Command& command, const Plan
     return;
   }
   std::string text =
-      fmt::format("{} lines in {} ticks (planned {}), {} slots fired, {} A-B edges, fault: {}\n", status.lines_executed,
-                  status.tick, plan.job.ticks, run.fired, status.axis.edges, to_string(status.fault));
+      fmt::format("{} lines in {} ticks (planned {}), {} slots fired, {} A-B edges, fault: {}\n", run.executed,
+                  status.tick, plan.job.ticks, run.fired, to_string(edges), to_string(status.fault));
   if (options.from || options.to) {
     text += fmt::format("window: ticks {} to {}; only lines {} to {} were run, counted over the job\n",
                         run.window.first, run.window.last, run.lines.first, run.lines.last);
@@ -356,11 +375,12 @@ void print_run(const EmulateOptions& options, const Command& command, const Plan
     text += fmt::format("carriage: {} A-B edges of the second channel\n", status.carriage.edges);
   }
   if (plan.spin) {
-    text += spin_up_text("axis", plan.spin->up, status.axis_spun_up);
+    text += spin_up_text("axis", plan.spin->up, run.runs.front().status.axis_spun_up);
   }
   if (plan.carriage && plan.carriage->spin) {
-    text += spin_up_text("carriage", plan.carriage->spin->up, status.carriage_spun_up);
+    text += spin_up_text("carriage", plan.carriage->spin->up, run.runs.front().status.carriage_spun_up);
   }
+  text += runs_text(plan, run.runs);
   for (const DarkLines& lines : run.dark) {
     text += fmt::format("dark from tick {} ({}) to {}: {} lines, fault register {} ({}): {}\n", lines.tick,
                         place_text(lines.first, plan), place_text(lines.last, plan), lines.last - lines.first + 1,
@@ -391,6 +411,19 @@ Result<void> check_spin_up(const EmulateOptions& options, const Plan& plan) {
   return {};
 }
 
+/// The host on the wires of the Verilog board starts one run, with the pins as they are.
+Result<void> check_rtl_lines(const EmulateOptions& options, const Plan& plan, Lines lines) {
+  const std::int64_t per_revolution = plan.rotary.lines_per_revolution;
+  const BoardRun first = run_with(plan, lines.first / per_revolution);
+  if (!options.rtl || (!first.backward && lines.last / per_revolution < first.end_revolution())) {
+    return {};
+  }
+  return Error{ErrorCode::bad_argument,
+               fmt::format("--rtl of lines {} to {}: the Verilog board takes the lines of one forward run; give --from "
+                           "and --to in the ticks of one, run 0 has {} to {}",
+                           lines.first, lines.last, 0, run_with(plan, 0).ticks - 1)};
+}
+
 }  // namespace
 
 Result<int> run_program(const EmulateOptions& options, const Command& command) {
@@ -403,11 +436,14 @@ Result<int> run_program(const EmulateOptions& options, const Command& command) {
   GRAVURE_CHECK(
       emulator::check_backward_delay(plan.line.offset_remainder_ticks, plan.clock.fpga_hz / plan.clock.seed_hz));
   GRAVURE_CHECK(check_spin_up(options, plan));
-  GRAVURE_TRY(const Mistakes mistakes, mistakes_of(options, device_setup(plan, 0, 0)));
+  DeviceSetup whole = device_setup(plan, 0, 0);
+  whole.end_revolution = plan.job.revolutions;
+  GRAVURE_TRY(const Mistakes mistakes, mistakes_of(options, whole));
   const std::uint64_t end = static_cast<std::uint64_t>(plan.job.ticks);
   const bool windowed = options.from || options.to;
   run.lines = lines_of(plan, windowed ? run.window : TickWindow{0, end}, mistakes);
   GRAVURE_CHECK(check_run(mistakes, run.lines.last));
+  GRAVURE_CHECK(check_rtl_lines(options, plan, run.lines));
   const DeviceSetup setup = device_setup(plan, run.lines.first / per_revolution, run.lines.first % per_revolution);
 
   std::unique_ptr<WaveFile> file;
@@ -425,8 +461,26 @@ Result<int> run_program(const EmulateOptions& options, const Command& command) {
   PinCounter pins(waves ? &*waves : nullptr);
   emulator::EmulatedDevice device(&pins);
   GRAVURE_TRY(FaultyHost host, FaultyHost::make(device, mistakes.faults, mistakes.acknowledgements));
-  GRAVURE_CHECK(host.configure(setup));
-  GRAVURE_CHECK(send_lines(*program, run.lines, host));
+  const auto end_run = [&] {
+    if (!run.runs.empty()) {
+      run.runs.back().status = host.status();
+      run.executed += run.runs.back().status.lines_executed;
+    }
+  };
+  const RunStart start = [&](const DeviceSetup& next) -> Result<bool> {
+    end_run();
+    const Result<void> configured = host.configure(next);
+    if (host.status().fault != DeviceFault::none) {
+      return false;
+    }
+    GRAVURE_CHECK(configured);
+    if (waves && !run.runs.empty()) {
+      waves->start_run(next);
+    }
+    run.runs.push_back({run_with(plan, next.first_revolution), {}});
+    return true;
+  };
+  GRAVURE_CHECK(send_lines(*program, run.lines, host, start));
   if (file) {
     waves->finish();
     if (cancel_token().cancelled()) {
@@ -435,10 +489,10 @@ Result<int> run_program(const EmulateOptions& options, const Command& command) {
     GRAVURE_CHECK(file->commit(run.window.last));
   }
   if (!options.edges_path.empty()) {
-    GRAVURE_TRY([[maybe_unused]] const std::uint64_t edges,
-                write_csv_edges(options.edges_path, registers_of(plan.ab), run.window));
+    GRAVURE_TRY([[maybe_unused]] const std::uint64_t edges, write_run_edges(options.edges_path, plan, run.window));
   }
   run.status = host.status();
+  end_run();
   run.fired = pins.fired();
   run.dark = host.dark();
   if (options.rtl) {

@@ -36,6 +36,10 @@ SpinStart spin_start(const AbPlan& ab, const std::optional<AxisSpin>& spin) {
           static_cast<std::uint64_t>(Integer(steps * Integer(ab.fraction_num) % Integer(ab.fraction_den)))};
 }
 
+Integer counts_of(const AxisState& state) {
+  return Integer(state.counts_high) * (Integer(1) << 64U) + Integer(state.counts_low);
+}
+
 Integer spin_edges(const AbPlan& ab, const SpinPlan& up) {
   return up.counts / counts_per_edge(ab);
 }

@@ -1,5 +1,8 @@
 #include "axis_check.hpp"
 
+#include <utility>
+
+#include "gravure/core/board_runs.hpp"
 #include "gravure/core/spin_phase.hpp"
 
 namespace gravure {
@@ -29,7 +32,7 @@ struct AxisCheck::Demand {
   Rational edges_per_revolution;
   Rational travel_um;         ///< in a revolution
   Rational largest_drift_um;  ///< from this on what is marked is in another's place
-  bool starts_again = false;  ///< with every revolution
+  bool to_and_fro = false;
 };
 
 Result<AxisCheck> AxisCheck::make(const Plan& plan) {
@@ -59,7 +62,8 @@ Result<AxisCheck> AxisCheck::make(const Plan& plan, const Demand& demand) {
   }
   AxisCheck check;
   check.name_ = demand.name;
-  check.lines_per_start_ = demand.starts_again ? plan.rotary.lines_per_revolution : 0;
+  check.lines_per_run_ = run_with(plan, 0).revolutions * plan.rotary.lines_per_revolution;
+  check.to_and_fro_ = demand.to_and_fro;
   check.line_ticks_ = plan.line.ticks;
   check.edges_num_ = static_cast<std::int64_t>(numerator_of(edges));
   check.edges_den_ = static_cast<std::int64_t>(denominator_of(edges));
@@ -77,13 +81,12 @@ Result<AxisCheck> AxisCheck::make(const Plan& plan, const Demand& demand) {
   if (check.drift_per_line_ != 0) {
     const Rational travel_per_line_um = demand.travel_um / plan.rotary.lines_per_revolution;
     const Integer first = ceil_of(Rational(demand.largest_drift_um / travel_per_line_um / abs(check.drift_per_line_)));
-    const bool reached = check.accumulates() || first <= plan.rotary.lines_per_revolution;
-    check.first_misplaced_line_ = reached && fits_int64(first) ? static_cast<std::int64_t>(first) : -1;
+    check.first_misplaced_line_ = fits_int64(first) ? static_cast<std::int64_t>(first) : -1;
   }
   return check;
 }
 
-/// The state that the spin-up leaves at tick 0.
+/// The state that the spin-up leaves at the first line of a run, and what is put out in all of it.
 void AxisCheck::take_spin(const AbPlan& ab, const std::optional<AxisSpin>& spin) {
   if (!spin) {
     return;
@@ -94,14 +97,19 @@ void AxisCheck::take_spin(const AbPlan& ab, const std::optional<AxisSpin>& spin)
   largest_lead_edges_ =
       (Rational(Integer(start.counts)) + Rational(Integer(start.accumulator), Integer(ab.fraction_den))) /
       Rational(Integer(1) << static_cast<unsigned>(ab.counter_bits - 2));
-  spun_up_high_ = static_cast<std::uint64_t>(Integer(spin->up.counts >> 64U));
-  spun_up_low_ = static_cast<std::uint64_t>(Integer(spin->up.counts & ~std::uint64_t{0}));
-  spun_up_edges_ = static_cast<std::uint64_t>(spin_edges(ab, spin->up));
+  spun_up_counts_ = spin->up.counts;
+  SpinPhase phase{spin->up.counts, start_accumulator_};
+  phase = phase_after(ab, ab.increment, lines_per_run_ * line_ticks_, std::move(phase));
+  rest_counts_ = phase.counts + spin->down.counts;
 }
 
-/// The line with which the motion that line `ordinal` belongs to starts.
-std::int64_t AxisCheck::start_of(std::int64_t ordinal) const noexcept {
-  return lines_per_start_ == 0 ? 0 : ordinal - ordinal % lines_per_start_;
+std::optional<Integer> AxisCheck::rest_counts(std::int64_t ordinal) const {
+  return rest_counts_ ? std::optional<Integer>(*rest_counts_ * sign_of(ordinal)) : std::nullopt;
+}
+
+std::int64_t AxisCheck::edges_in_run(std::int64_t ordinal, std::int64_t tick) const noexcept {
+  const std::int64_t begin = (ordinal - ordinal % lines_per_run_) * line_ticks_;
+  return static_cast<std::int64_t>(register_edges(tick - begin)) * sign_of(ordinal);
 }
 
 std::uint64_t AxisCheck::register_edges(std::int64_t tick) const noexcept {
@@ -113,18 +121,16 @@ std::uint64_t AxisCheck::register_edges(std::int64_t tick) const noexcept {
   return static_cast<std::uint64_t>(counts >> counter_shift_);
 }
 
-Rational AxisCheck::exact_error_edges(std::int64_t ordinal, std::uint64_t edges) const {
-  const std::int64_t start = start_of(ordinal - 1);  // an end belongs to the motion that it ends
-  return Rational(Integer(edges)) - Rational(Integer(register_edges(start * line_ticks_))) -
-         ratio(Integer(ordinal - start) * edges_num_, edges_den_);
+Rational AxisCheck::exact_error_at_end(std::int64_t ordinal, std::int64_t edges) const {
+  const std::int64_t lines = ordinal % lines_per_run_ + 1;
+  return Rational(Integer(edges) * sign_of(ordinal)) - ratio(Integer(lines) * edges_num_, edges_den_);
 }
 
 double AxisCheck::error_edges(std::int64_t ordinal, const AxisState& axis) const {
-  const std::int64_t start = start_of(ordinal);
-  const Wide ideal = static_cast<Wide>(ordinal - start) * edges_num_;
+  const Wide ideal = static_cast<Wide>(ordinal % lines_per_run_) * edges_num_;
   const Wide whole = ideal / edges_den_;
   const Wide rest = ideal % edges_den_;
-  const Wide apart = static_cast<Wide>(axis.edges) - static_cast<Wide>(register_edges(start * line_ticks_)) - whole;
+  const Wide apart = static_cast<Wide>(axis.edges) * sign_of(ordinal) - whole;
   return static_cast<double>(apart) - static_cast<double>(rest) / static_cast<double>(edges_den_);
 }
 

@@ -8,9 +8,9 @@
 
 namespace gravure {
 
-/// Holds an axis of the device against the motion the plan's geometry asks for: at line L of the job it must stand at
-/// L / nL revolutions, that is L * edges_per_revolution / nL A-B edges. In flat mode each pass starts where the one
-/// before ended, so the same holds within a pass.
+/// Holds an axis of the device against the motion the plan's geometry asks for: at line L of a run (board_runs.hpp) it
+/// must stand L / nL revolutions on from where the run's lines began, that is L * edges_per_revolution / nL A-B edges;
+/// in backward passes as far the other way. Lines are counted over the whole job.
 class AxisCheck {
  public:
   /// The axis across the lines. Fails with out_of_range when the edges of a line, as a ratio in lowest terms, are
@@ -19,34 +19,34 @@ class AxisCheck {
   /// The carriage of a helical plan, likewise.
   static Result<AxisCheck> make_carriage(const Plan& plan);
 
-  /// Device minus ideal at a line start, in edges: whole edges exact, the ideal's part below one edge to 1e-15.
+  /// Device minus ideal at a line start, in edges the way the run goes (positive: the axis leads): whole edges exact,
+  /// the ideal's part below one edge to 1e-15.
   double error_edges(std::int64_t ordinal, const AxisState& axis) const;
-  /// A-B edges the registers put out in `tick` FPGA ticks, at most 2^63 - 1: whole steps of the prescaler, each with
-  /// its increment and its share of the fraction, floor(counts / 2^(n-2)), with what the spin-up left of an edge and of
-  /// a count. Exact.
+  /// A-B edges the registers put out in the first `tick` FPGA ticks of a run, at most 2^63 - 1: whole steps of the
+  /// prescaler, each with its increment and its share of the fraction, floor(counts / 2^(n-2)), with what the spin-up
+  /// left of an edge and of a count. Exact.
   std::uint64_t register_edges(std::int64_t tick) const noexcept;
-  /// Device minus ideal at the start of line `ordinal` (the number of lines: the end of the last), exact.
-  Rational exact_error_edges(std::int64_t ordinal, std::uint64_t edges) const;
+  /// Where that puts the axis at tick `tick` of the job in the run of line `ordinal`: below 0 in backward passes.
+  std::int64_t edges_in_run(std::int64_t ordinal, std::int64_t tick) const noexcept;
+  /// Device minus ideal, as above, at the end of line `ordinal`, exact.
+  Rational exact_error_at_end(std::int64_t ordinal, std::int64_t edges) const;
   /// How far the edges may lag behind the drift: the edge that is about to come, with a prescaler the step that is, and
   /// the part of a count that the fraction has not filled. The lag is below this.
   const Rational& largest_lag_edges() const noexcept { return largest_lag_edges_; }
   /// How far they may lead: what a spin-up left of an edge and of a count.
   const Rational& largest_lead_edges() const noexcept { return largest_lead_edges_; }
-  /// Did the channel put out before tick 0 what the plan's spin-up is to?
-  bool spun_up_right(const AxisState& state) const noexcept {
-    return state.counts_high == spun_up_high_ && state.counts_low == spun_up_low_;
-  }
-  /// What it is to, for messages.
-  std::uint64_t spun_up_edges() const noexcept { return spun_up_edges_; }
+  /// What the channel is to put out before the first line of the run that has line `ordinal`, in counts with sign.
+  Integer spun_up_counts(std::int64_t ordinal) const { return spun_up_counts_ * sign_of(ordinal); }
+  /// And from rest to rest; none where the plan has no spin-down.
+  std::optional<Integer> rest_counts(std::int64_t ordinal) const;
   double step_um() const noexcept { return step_um_; }
-  /// Does the drift add up over the revolutions of the job?
-  bool accumulates() const noexcept { return lines_per_start_ == 0; }
+  std::int64_t lines_per_run() const noexcept { return lines_per_run_; }
   /// "axis" or "carriage", for messages.
   const char* name() const noexcept { return name_; }
 
   /// Drift of the counter alone, without its steps: exact, in lines per line. Positive: the axis leads.
   const Rational& drift_per_line() const noexcept { return drift_per_line_; }
-  /// From this line of the job on, the drift is half a line (carriage: half a column) or more: what is marked lands on
+  /// From this line of a run on, the drift is half a line (carriage: half a column) or more: what is marked lands on
   /// a neighbour's place. -1: never.
   std::int64_t first_misplaced_line() const noexcept { return first_misplaced_line_; }
 
@@ -54,10 +54,13 @@ class AxisCheck {
   struct Demand;
   static Result<AxisCheck> make(const Plan& plan, const Demand& demand);
   void take_spin(const AbPlan& ab, const std::optional<AxisSpin>& spin);
-  std::int64_t start_of(std::int64_t ordinal) const noexcept;
+  int sign_of(std::int64_t ordinal) const noexcept {
+    return to_and_fro_ && (ordinal / lines_per_run_) % 2 != 0 ? -1 : 1;
+  }
 
   const char* name_ = "axis";
-  std::int64_t lines_per_start_ = 0;  ///< flat: lines of a pass; else 0, it starts once
+  std::int64_t lines_per_run_ = 1;
+  bool to_and_fro_ = false;  ///< every other run goes backward
   std::int64_t line_ticks_ = 0;
   std::int64_t edges_num_ = 0;  ///< ideal edges a line = num / den
   std::int64_t edges_den_ = 1;
@@ -68,11 +71,10 @@ class AxisCheck {
   std::uint64_t fraction_den_ = 1;
   Rational largest_lag_edges_ = 1;
   Rational largest_lead_edges_ = 0;
-  std::uint64_t start_counts_ = 0;  ///< of an edge, at tick 0
+  std::uint64_t start_counts_ = 0;  ///< of an edge, at the first line of a run
   std::uint64_t start_accumulator_ = 0;
-  std::uint64_t spun_up_high_ = 0;  ///< counts before tick 0
-  std::uint64_t spun_up_low_ = 0;
-  std::uint64_t spun_up_edges_ = 0;
+  Integer spun_up_counts_ = 0;
+  std::optional<Integer> rest_counts_;
   double step_um_ = 0;
   Rational drift_per_line_ = 0;
   std::int64_t first_misplaced_line_ = -1;

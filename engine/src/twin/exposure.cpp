@@ -12,41 +12,7 @@ std::size_t size(std::int64_t bytes) {
   return static_cast<std::size_t>(bytes);
 }
 
-std::vector<ScheduleSegment> schedule_of(const std::optional<AxisSpin>& spin) {
-  std::vector<ScheduleSegment> schedule;
-  if (spin) {
-    for (const SpinSegment& segment : spin->up.segments) {
-      schedule.push_back({segment.increment, static_cast<std::uint64_t>(segment.seeds)});
-    }
-  }
-  return schedule;
-}
-
 }  // namespace
-
-DeviceSetup device_setup(const Plan& plan, std::int64_t first_revolution, std::int64_t first_line) {
-  DeviceSetup setup;
-  setup.counter_bits = plan.ab.counter_bits;
-  setup.prescaler = plan.ab.prescaler;
-  setup.increment = plan.ab.increment;
-  setup.fraction_num = plan.ab.fraction_num;
-  setup.fraction_den = plan.ab.fraction_den;
-  if (plan.carriage) {
-    const AbPlan& carriage = plan.carriage->ab;
-    setup.carriage = {carriage.prescaler, carriage.increment, carriage.fraction_num, carriage.fraction_den,
-                      schedule_of(plan.carriage->spin)};
-  }
-  setup.clock_multiplier = plan.clock.ticks_per_slot / plan.clock.pulse_divider;
-  setup.spin_up = schedule_of(plan.spin);
-  setup.ticks_per_slot = plan.clock.ticks_per_slot;
-  setup.slots_per_line = plan.line.slots;
-  setup.window_slots = plan.line.pixels;
-  setup.lines_per_revolution = plan.rotary.lines_per_revolution;
-  setup.revolutions = plan.job.revolutions;
-  setup.first_revolution = first_revolution;
-  setup.first_line = first_line;
-  return setup;
-}
 
 Result<void> ProgramChunk::load(LineSource& program, ChunkAddress address) {
   if (address.layer == address_.layer && address.chunk == address_.chunk) {

@@ -3,13 +3,14 @@
 #include <cmath>
 
 #include "figure.hpp"
+#include "gravure/core/board_runs.hpp"
 
 namespace gravure {
 namespace {
 
-/// Revolutions over which a drift adds up by the end of revolution `revolution`.
-std::int64_t drifting_revolutions(const AxisCheck& axis, std::int64_t revolution) {
-  return axis.accumulates() ? revolution + 1 : 1;
+/// Revolutions over which a drift adds up by the end of revolution `revolution`: those of its run.
+std::int64_t drifting_revolutions(const Plan& plan, std::int64_t revolution) {
+  return revolution - run_with(plan, revolution).first_revolution + 1;
 }
 
 /// The seam after every revolution: the drift of the registers the device ran with, exact.
@@ -19,7 +20,7 @@ void fill_seam(const Plan& plan, const AxisCheck& axis, VerifyReport& report) {
   for (std::int64_t r = 0; r < report.revolutions; ++r) {
     SeamRow row;
     row.revolution = r;
-    row.drift_lines = per_revolution * drifting_revolutions(axis, r);
+    row.drift_lines = per_revolution * drifting_revolutions(plan, r);
     row.drift_um = to_double(Rational(row.drift_lines * plan.rotary.line_pitch_um));
     report.seam.push_back(std::move(row));
   }
@@ -49,13 +50,11 @@ std::optional<double> judge_drift(const Plan& plan, const AbPlan& ab, const Rati
     return std::nullopt;  // the last line never ended, which is said
   }
   const std::int64_t lines = plan.job.revolutions * plan.rotary.lines_per_revolution;
-  const Rational measured = axis.exact_error_edges(lines, *tally.end_edges);
+  const Rational measured = axis.exact_error_at_end(lines - 1, *tally.end_edges);
   const double measured_um = to_double(Rational(measured)) * axis.step_um();
-  const Rational drift = ab.drift_lines_per_revolution * drifting_revolutions(axis, plan.job.revolutions - 1) *
+  const Rational drift = ab.drift_lines_per_revolution * drifting_revolutions(plan, plan.job.revolutions - 1) *
                          edges_per_revolution / plan.rotary.lines_per_revolution;
-  // Where a motion starts between two edges, the edge that began before belongs to it: one more or less.
-  const Rational begun = axis.accumulates() ? 0 : 1;
-  if (measured > drift + begun + axis.largest_lead_edges() || drift - measured >= axis.largest_lag_edges()) {
+  if (measured > drift + axis.largest_lead_edges() || drift - measured >= axis.largest_lag_edges()) {
     report.violations.push_back(whose + "at the end of the last line the device's axis is " + figure(measured_um) +
                                 " um off, the plan's drift explains " + figure(to_double(drift) * axis.step_um()) +
                                 " um and less than " + figure(to_double(axis.largest_lag_edges()) * axis.step_um()) +
@@ -172,7 +171,7 @@ void say_violations(const Plan& plan, const AxisChecks& axes, const Tally& tally
   judge_windows(plan.line, report);
   report.seam_end_measured_um = judge_drift(plan, plan.ab, plan.rotary.edges_per_revolution, axis, tally.axis, report);
   const Rational limit_lines = plan.ab.seam_limit_um / plan.rotary.line_pitch_um;
-  const std::int64_t drifting = drifting_revolutions(axis, plan.job.revolutions - 1) * plan.rotary.lines_per_revolution;
+  const std::int64_t drifting = drifting_revolutions(plan, plan.job.revolutions - 1) * plan.rotary.lines_per_revolution;
   if (abs(Rational(axis.drift_per_line() * drifting)) > limit_lines) {
     say("seam error of " + figure(report.seam_max_um) +
         " um at the end of the job exceeds limits.seam_um = " + to_decimal_string(plan.ab.seam_limit_um) +

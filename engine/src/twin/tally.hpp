@@ -18,8 +18,8 @@ inline std::string place(const Plan& plan, std::int64_t ordinal) {
          std::to_string(ordinal % plan.rotary.lines_per_revolution);
 }
 
-inline std::string edges_text(std::uint64_t edges, std::uint64_t expected) {
-  return std::to_string(edges) + " A-B edges since the start of the job, the program's registers give " +
+inline std::string edges_text(std::int64_t edges, std::int64_t expected) {
+  return std::to_string(edges) + " A-B edges since the run began, the program's registers give " +
          std::to_string(expected);
 }
 
@@ -62,8 +62,8 @@ struct UnreadLayer {
 struct AxisTally {
   double worst_edges = 0;  ///< with sign
   std::int64_t worst_ordinal = -1;
-  std::optional<std::uint64_t> end_edges;  ///< where the device says it stands at the end of the job
-  Finding wrong;                           ///< not where its registers put it
+  std::optional<std::int64_t> end_edges;  ///< where the device says it stands at the end of the job
+  Finding wrong;                          ///< not where its registers put it
 
   void see(double edges, std::int64_t ordinal) {
     if (worst_ordinal < 0 || std::fabs(edges) > std::fabs(worst_edges) ||

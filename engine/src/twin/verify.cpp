@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "axis_check.hpp"
+#include "gravure/core/spin_phase.hpp"
 #include "gravure/raster/count.hpp"
 #include "judge.hpp"
 #include "judge_budget.hpp"
@@ -21,10 +22,6 @@ constexpr std::int64_t kReportBytes = 256;  // of each revolution: its row of th
 
 std::size_t size(std::int64_t bytes) {
   return static_cast<std::size_t>(bytes);
-}
-
-std::string counts_text(const AxisState& state) {
-  return to_string(Integer((Integer(state.counts_high) << 64U) + Integer(state.counts_low)));
 }
 
 /// The layers cut from one source image, and the revolutions that expose each.
@@ -241,34 +238,52 @@ class Verifier::Worker final : public PinObserver {
 
   void see_axis(const AxisCheck& check, const ExecutedLine& line, const AxisState& state, AxisTally& tally) {
     tally.see(check.error_edges(line.ordinal, state), line.ordinal);
-    if (const std::uint64_t expected = check.register_edges(line.start_tick); state.edges != expected) {
+    const std::int64_t expected = check.edges_in_run(line.ordinal, line.start_tick);
+    if (state.edges != expected) {
       tally.wrong.add(line.ordinal, edges_text(state.edges, expected));
     }
     const std::int64_t lost_from = check.first_misplaced_line();
-    if (lost_from >= 0 &&
-        (check.accumulates() ? line.ordinal : line.ordinal % plan_.rotary.lines_per_revolution) >= lost_from) {
+    if (lost_from >= 0 && line.ordinal % check.lines_per_run() >= lost_from) {
       tally_.misplaced.add(line.ordinal, std::string("the ") + check.name() + " is half a line or more away");
     }
   }
 
   void see_axis_end(const AxisCheck& check, const DeviceStatus& status, const AxisState& state,
-                    std::int64_t end_ordinal, AxisTally& tally) {
-    if (const std::uint64_t expected = check.register_edges(status.tick); state.edges != expected) {
-      tally.wrong.add(end_ordinal - 1, "at its end " + edges_text(state.edges, expected));
+                    const std::optional<AxisState>& rest, std::int64_t last_ordinal, AxisTally& tally) {
+    const std::int64_t expected = check.edges_in_run(last_ordinal, status.tick);
+    if (state.edges != expected) {
+      tally.wrong.add(last_ordinal, "at its end " + edges_text(state.edges, expected));
+    }
+    if ((last_ordinal + 1) % check.lines_per_run() == 0) {
+      see_rest(check, rest, last_ordinal, tally);
     }
     if (status.tick == plan_.job.ticks) {
       tally.end_edges = state.edges;
     }
   }
 
-  /// Where the schedules from rest have brought the axes at tick 0.
+  /// Where the spin-down after a run has left an axis.
+  static void see_rest(const AxisCheck& check, const std::optional<AxisState>& rest, std::int64_t last_ordinal,
+                       AxisTally& tally) {
+    const std::optional<Integer> expected = check.rest_counts(last_ordinal);
+    if (rest.has_value() != expected.has_value()) {
+      tally.wrong.add(last_ordinal, rest ? "after it the device spins down, the plan does not"
+                                         : "after it the device does not come to rest as the plan has it");
+    } else if (rest && counts_of(*rest) != *expected) {
+      tally.wrong.add(last_ordinal, "after it the device is at rest " + to_string(counts_of(*rest)) +
+                                        " counts from where the run began at rest, by the plan " +
+                                        to_string(*expected));
+    }
+  }
+
+  /// Where the schedules from rest have brought the axes at the first line of the run.
   void see_spin_up() {
     const DeviceStatus status = device_->status();
     const auto see = [&](const AxisCheck& check, const AxisState& state, AxisTally& tally) {
-      if (!check.spun_up_right(state)) {
-        tally.wrong.add(0, "the spin-up ends after " + std::to_string(state.edges) + " A-B edges (" +
-                               counts_text(state) + " counts), the plan's after " +
-                               std::to_string(check.spun_up_edges()));
+      if (const Integer expected = check.spun_up_counts(first_ordinal_); counts_of(state) != expected) {
+        tally.wrong.add(first_ordinal_ - first_ordinal_ % check.lines_per_run(),
+                        "the spin-up ends after " + to_string(counts_of(state)) + " counts, the plan's after " +
+                            to_string(expected));
       }
     };
     see(parent_.axes_.cross_scan, status.axis_spun_up, tally_.axis);
@@ -285,9 +300,10 @@ class Verifier::Worker final : public PinObserver {
     if (status.tick != end_ordinal * plan_.line.ticks) {
       return;  // refused or lost lines are said elsewhere
     }
-    see_axis_end(parent_.axes_.cross_scan, status, status.axis, end_ordinal, tally_.axis);
+    see_axis_end(parent_.axes_.cross_scan, status, status.axis, status.axis_at_rest, end_ordinal - 1, tally_.axis);
     if (parent_.axes_.carriage) {
-      see_axis_end(*parent_.axes_.carriage, status, status.carriage, end_ordinal, tally_.carriage);
+      see_axis_end(*parent_.axes_.carriage, status, status.carriage, status.carriage_at_rest, end_ordinal - 1,
+                   tally_.carriage);
     }
   }
 

@@ -111,18 +111,21 @@ void check_job(const DeviceSetup& setup, Refusals& refusals) {
   if (setup.lines_per_revolution >= 1) {
     refusals.range("first_line", setup.first_line, 0, setup.lines_per_revolution - 1);
   }
-  refusals.range("revolutions", setup.revolutions, 1, most_of(fpga::kPositionRevolutionRegister) + 1);
-  if (setup.revolutions >= 1) {
-    refusals.range("first_revolution", setup.first_revolution, 0, setup.revolutions - 1);
+  refusals.range("end_revolution", setup.end_revolution, 1, most_of(fpga::kPositionRevolutionRegister) + 1);
+  if (setup.end_revolution >= 1) {
+    refusals.range("begin_revolution", setup.begin_revolution, 0, setup.end_revolution - 1);
+  }
+  if (setup.begin_revolution < setup.end_revolution) {
+    refusals.range("first_revolution", setup.first_revolution, setup.begin_revolution, setup.end_revolution - 1);
   }
   if (!refusals.empty()) {
     return;
   }
-  std::int64_t ticks = setup.revolutions;
+  std::int64_t ticks = setup.end_revolution;
   for (const std::int64_t factor : {setup.lines_per_revolution, setup.slots_per_line, setup.ticks_per_slot}) {
     if (__builtin_mul_overflow(ticks, factor, &ticks)) {
-      refusals.add("revolutions", std::to_string(setup.revolutions),
-                   "what keeps revolutions * lines_per_revolution * slots_per_line * ticks_per_slot at most " +
+      refusals.add("end_revolution", std::to_string(setup.end_revolution),
+                   "what keeps end_revolution * lines_per_revolution * slots_per_line * ticks_per_slot at most " +
                        std::to_string(kMaxTick) + " ticks",
                    "split the job");
       return;

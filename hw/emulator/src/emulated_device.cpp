@@ -26,6 +26,18 @@ std::string EmulatedDevice::place() const {
   return place_of(revolution_, line_);
 }
 
+Result<void> EmulatedDevice::check_schedules(const DeviceSetup& setup) {
+  const fpga::AbRegisters axis = ab_registers_of(setup);
+  const fpga::AbRegisters carriage = carriage_registers_of(setup);
+  const std::int64_t per_seed = setup.clock_multiplier;
+  GRAVURE_CHECK(check_schedule("spin_up", setup.spin_up, axis, per_seed));
+  GRAVURE_CHECK(check_schedule("spin_down", setup.spin_down, axis, per_seed));
+  GRAVURE_CHECK(check_schedule("carriage.spin_up", setup.carriage.spin_up, carriage, per_seed));
+  GRAVURE_CHECK(check_schedule("carriage.spin_down", setup.carriage.spin_down, carriage, per_seed));
+  GRAVURE_CHECK(check_lead("spin_up", setup.spin_up));
+  return check_lead("carriage.spin_up", setup.carriage.spin_up);
+}
+
 Result<void> EmulatedDevice::configure(const DeviceSetup& setup) {
   if (fault_ != DeviceFault::none) {
     return Error{ErrorCode::device, "configure: the fault \"" + to_string(fault_) +
@@ -33,8 +45,7 @@ Result<void> EmulatedDevice::configure(const DeviceSetup& setup) {
   }
   GRAVURE_CHECK(check_setup(setup));
   const std::int64_t per_seed = setup.clock_multiplier;
-  GRAVURE_CHECK(check_schedule("spin_up", setup.spin_up, ab_registers_of(setup), per_seed));
-  GRAVURE_CHECK(check_schedule("carriage.spin_up", setup.carriage.spin_up, carriage_registers_of(setup), per_seed));
+  GRAVURE_CHECK(check_schedules(setup));
   fired_.assign(fpga::packed_bytes(static_cast<std::uint32_t>(setup.window_slots)), std::byte{0});
   setup_ = setup;
   ab_ = ab_registers_of(setup);
@@ -44,6 +55,7 @@ Result<void> EmulatedDevice::configure(const DeviceSetup& setup) {
   ticks_per_line_ = setup.slots_per_line * setup.ticks_per_slot;
   revolution_ = setup.first_revolution;
   line_ = setup.first_line;
+  run_tick_ = setup.begin_revolution * setup.lines_per_revolution * ticks_per_line_;
   ordinal_ = setup.first_revolution * setup.lines_per_revolution + setup.first_line;
   lines_executed_ = 0;
   detail_.clear();
@@ -96,8 +108,8 @@ void EmulatedDevice::run_line(const LineFrame& frame, bool dark) {
                         .ordinal = ordinal_,
                         .first_slot = dark ? 0 : frame.first_slot,
                         .fired = fired_,
-                        .axis_at_start = axis_after(ab_start_, ab_, tick),
-                        .carriage_at_start = axis_after(carriage_start_, carriage_, tick)});
+                        .axis_at_start = axis_at(tick),
+                        .carriage_at_start = axis_after(carriage_start_, carriage_, tick - run_tick_)});
   }
   ++ordinal_;
   if (++line_ == setup_.lines_per_revolution) {
@@ -111,9 +123,9 @@ Result<void> EmulatedDevice::check_running(const std::string& what) {
   if (!configured_) {
     return Error{ErrorCode::device, "send: the device is not configured; call configure() first"};
   }
-  if (revolution_ == setup_.revolutions) {
+  if (revolution_ == setup_.end_revolution) {
     return refuse(DeviceFault::sequence,
-                  what + ": the job of " + std::to_string(setup_.revolutions) + " revolutions is over");
+                  what + ": the run up to revolution " + std::to_string(setup_.end_revolution - 1) + " is over");
   }
   return {};
 }
@@ -126,7 +138,7 @@ Result<void> EmulatedDevice::pass_line(DeviceFault fault, std::string detail) {
 }
 
 Result<void> EmulatedDevice::send(const LineFrame& frame) {
-  if (!configured_ || revolution_ == setup_.revolutions) {
+  if (!configured_ || revolution_ == setup_.end_revolution) {
     return check_running("frame of " + place_of(frame.revolution, frame.line));
   }
   if (fault_ != DeviceFault::none) {
@@ -159,15 +171,40 @@ DeviceStatus EmulatedDevice::status() const {
                       .carriage = {},
                       .axis_spun_up = {},
                       .carriage_spun_up = {},
+                      .axis_at_rest = {},
+                      .carriage_at_rest = {},
                       .fault = fault_,
                       .detail = detail_};
   if (configured_) {
-    status.axis = axis_after(ab_start_, ab_, status.tick);
-    status.carriage = axis_after(carriage_start_, carriage_, status.tick);
-    status.axis_spun_up = spun_up(ab_start_, ab_);
-    status.carriage_spun_up = spun_up(carriage_start_, carriage_);
+    status.axis = axis_at(status.tick);
+    status.carriage = axis_after(carriage_start_, carriage_, status.tick - run_tick_);
+    status.axis_spun_up = turned(state_of(ab_start_, ab_));
+    status.carriage_spun_up = state_of(carriage_start_, carriage_);
+  }
+  if (configured_ && revolution_ == setup_.end_revolution) {
+    const std::int64_t ticks = status.tick - run_tick_;
+    const auto rest = [&](const std::vector<ScheduleSegment>& down, const fpga::AbRegisters& registers,
+                          const ScheduleEnd& start) -> std::optional<AxisState> {
+      if (down.empty()) {
+        return std::nullopt;
+      }
+      return state_of(run_schedule(down, registers, setup_.clock_multiplier, mark(start, registers, ticks)), registers);
+    };
+    status.axis_at_rest = rest(setup_.spin_down, ab_, ab_start_);
+    if (status.axis_at_rest) {
+      status.axis_at_rest = turned(*status.axis_at_rest);
+    }
+    status.carriage_at_rest = rest(setup_.carriage.spin_down, carriage_, carriage_start_);
   }
   return status;
+}
+
+AxisState EmulatedDevice::turned(const AxisState& state) const {
+  return setup_.backward ? mirrored(state) : state;
+}
+
+AxisState EmulatedDevice::axis_at(std::int64_t tick) const {
+  return turned(axis_after(ab_start_, ab_, tick - run_tick_));
 }
 
 void EmulatedDevice::acknowledge() {

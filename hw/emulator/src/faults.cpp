@@ -45,10 +45,10 @@ Result<std::int64_t> parse_line_place(std::string_view text, const DeviceSetup& 
     return bad_place(text);
   }
   if (!has_revolution) {
-    GRAVURE_CHECK(check_index(text, "line", line, setup.revolutions * setup.lines_per_revolution));
+    GRAVURE_CHECK(check_index(text, "line", line, setup.end_revolution * setup.lines_per_revolution));
     return line;
   }
-  GRAVURE_CHECK(check_index(text, "revolution", revolution, setup.revolutions));
+  GRAVURE_CHECK(check_index(text, "revolution", revolution, setup.end_revolution));
   GRAVURE_CHECK(check_index(text, "line", line, setup.lines_per_revolution));
   return revolution * setup.lines_per_revolution + line;
 }
@@ -107,6 +107,7 @@ Result<FaultyHost> FaultyHost::make(EmulatedDevice& device, std::vector<PlannedF
 }
 
 Result<void> FaultyHost::configure(const DeviceSetup& setup) {
+  acknowledge_to(setup.first_revolution * setup.lines_per_revolution + setup.first_line);
   GRAVURE_CHECK(device_->configure(setup));
   setup_ = setup;
   return {};
@@ -133,7 +134,7 @@ Result<void> FaultyHost::send_badly(FaultKind kind, const LineFrame& frame, std:
       }
       break;
     case FaultKind::lost:
-      if (ordinal + 1 == setup_.revolutions * setup_.lines_per_revolution) {
+      if (ordinal + 1 == setup_.end_revolution * setup_.lines_per_revolution) {
         return device_->pass_line(DeviceFault::underrun, "the last frame was lost, no other follows");
       }
       bad.line = (frame.line + 1) % setup_.lines_per_revolution;
@@ -160,13 +161,17 @@ void FaultyHost::note(std::int64_t ordinal) {
                    .detail = device_->status().detail});
 }
 
-Result<void> FaultyHost::send(const LineFrame& frame) {
-  const std::int64_t ordinal = frame.revolution * setup_.lines_per_revolution + frame.line;
+void FaultyHost::acknowledge_to(std::int64_t ordinal) {
   while (next_acknowledgement_ < acknowledgements_.size() && acknowledgements_[next_acknowledgement_] <= ordinal) {
     ++next_acknowledgement_;
     device_->acknowledge();
     silent_ = false;
   }
+}
+
+Result<void> FaultyHost::send(const LineFrame& frame) {
+  const std::int64_t ordinal = frame.revolution * setup_.lines_per_revolution + frame.line;
+  acknowledge_to(ordinal);
   while (next_fault_ < faults_.size() && faults_[next_fault_].ordinal < ordinal) {
     ++next_fault_;  // of lines before the first that is sent
   }

@@ -20,17 +20,42 @@ bool fires(const ExecutedLine& line, std::int64_t window_slots, std::int64_t slo
   return ((byte >> static_cast<unsigned>(7 - at % 8)) & 1U) != 0;
 }
 
+/// An axis that runs backward has its pins exchanged.
+fpga::AbPins shown(fpga::AbPins pins, bool backward) {
+  return backward ? fpga::AbPins{pins.b, pins.a} : pins;
+}
+
 }  // namespace
 
 MachineWaves::MachineWaves(const Setup& setup, WaveSink& sink)
     : setup_(setup), sink_(sink), edges_(*fpga::AbEdges::make(ab_registers_of(setup.device))) {
-  const fpga::AbPins pins = fpga::position_after(edges_.registers(), setup.first_tick).pins;
-  values_[place(Signal::a)] = pins.a ? 1 : 0;
-  values_[place(Signal::b)] = pins.b ? 1 : 0;
-  edges_.seek(setup.first_tick);
+  start_run(setup.device);
+}
+
+void MachineWaves::start_run(const DeviceSetup& device) {
+  const auto begin = static_cast<std::uint64_t>(device.begin_revolution * device.lines_per_revolution *
+                                                device.slots_per_line * device.ticks_per_slot);
+  if (begin > 0) {
+    fall_by(begin - 1);
+    edges_to(begin - 1);
+  }
+  setup_.device = device;
+  run_tick_ = begin;
+  edges_ = *fpga::AbEdges::make(ab_registers_of(device));
+  const std::uint64_t shown_from = std::max(begin, setup_.first_tick);
+  const fpga::AbPins pins = shown(fpga::position_after(edges_.registers(), shown_from - begin).pins, device.backward);
+  set(shown_from, Signal::a, pins.a ? 1 : 0);
+  set(shown_from, Signal::b, pins.b ? 1 : 0);
+  edges_.seek(shown_from - begin);
+  take_edge();
+}
+
+void MachineWaves::take_edge() {
   const auto edge = edges_.next_edge();
   edges_left_ = edge.has_value();
-  next_edge_ = edge.value_or(fpga::AbEdge{});
+  if (edges_left_) {
+    next_edge_ = {edge->clock + run_tick_, shown(edge->pins, setup_.device.backward)};
+  }
 }
 
 void MachineWaves::open_window() {
@@ -57,9 +82,7 @@ void MachineWaves::edges_to(std::uint64_t tick) {
   while (edges_left_ && !stopped_ && next_edge_.clock <= tick) {
     set(next_edge_.clock, Signal::a, next_edge_.pins.a ? 1 : 0);
     set(next_edge_.clock, Signal::b, next_edge_.pins.b ? 1 : 0);
-    const auto edge = edges_.next_edge();
-    edges_left_ = edge.has_value();
-    next_edge_ = edge.value_or(fpga::AbEdge{});
+    take_edge();
   }
 }
 

@@ -13,9 +13,9 @@ std::uint64_t ticks_of(const ScheduleSegment& segment, std::int64_t ticks_per_se
   return segment.seeds * static_cast<std::uint64_t>(ticks_per_seed);
 }
 
-AxisState state_of(fpga::Uint128 counts, std::uint64_t edges) {
-  return {.edges = edges,
-          .counts_high = static_cast<std::uint64_t>(counts >> 64U),
+AxisState make_state(fpga::Uint128 counts, fpga::Uint128 edges) {
+  return {.edges = static_cast<std::int64_t>(edges),
+          .counts_high = static_cast<std::int64_t>(counts >> 64U),
           .counts_low = static_cast<std::uint64_t>(counts)};
 }
 
@@ -34,7 +34,6 @@ Result<void> check_schedule(const std::string& field, const std::vector<Schedule
     return refusal(field + " of " + std::to_string(segments.size()) + " segments: its list holds " +
                    std::to_string(kScheduleSegments));
   }
-  std::uint64_t seeds = 0;
   for (const ScheduleSegment& segment : segments) {
     if (segment.increment > fpga::max_increment(registers)) {
       return refusal(field + " increment = " + std::to_string(segment.increment) + ": allowed is 0 to " +
@@ -49,6 +48,13 @@ Result<void> check_schedule(const std::string& field, const std::vector<Schedule
       return refusal(field + " seeds = " + std::to_string(segment.seeds) + ": must be whole steps of the prescaler, " +
                      std::to_string(registers.prescaler) + " ticks");
     }
+  }
+  return {};
+}
+
+Result<void> check_lead(const std::string& field, const std::vector<ScheduleSegment>& segments) {
+  std::uint64_t seeds = 0;
+  for (const ScheduleSegment& segment : segments) {
     seeds += segment.seeds;
   }
   if (seeds > fpga::largest(fpga::kFirstTickRegister)) {
@@ -73,12 +79,12 @@ void AxisWalk::run(std::uint64_t ticks) noexcept {
 }
 
 AxisState AxisWalk::state() const noexcept {
-  return state_of(counts_, static_cast<std::uint64_t>(counts_ >> edge_shift(registers_)));
+  return make_state(counts_, counts_ >> edge_shift(registers_));
 }
 
 ScheduleEnd run_schedule(const std::vector<ScheduleSegment>& segments, const fpga::AbRegisters& registers,
-                         std::int64_t ticks_per_seed) noexcept {
-  AxisWalk walk(registers);
+                         std::int64_t ticks_per_seed, const ScheduleEnd& from) noexcept {
+  AxisWalk walk(registers, from.counts, from.accumulator);
   for (const ScheduleSegment& segment : segments) {
     walk.set_increment(segment.increment);  // the fraction runs on through all of them
     walk.run(ticks_of(segment, ticks_per_seed));
@@ -86,16 +92,29 @@ ScheduleEnd run_schedule(const std::vector<ScheduleSegment>& segments, const fpg
   return {.counts = walk.counts(), .accumulator = walk.accumulator()};
 }
 
-AxisState spun_up(const ScheduleEnd& end, const fpga::AbRegisters& registers) noexcept {
-  return state_of(end.counts, static_cast<std::uint64_t>(end.counts >> edge_shift(registers)));
+ScheduleEnd mark(const ScheduleEnd& from, const fpga::AbRegisters& registers, std::int64_t ticks) noexcept {
+  const fpga::AbPosition position = fpga::position_after(registers, static_cast<std::uint64_t>(ticks));
+  const fpga::Uint128 gathered = fpga::Uint128{position.accumulator} + from.accumulator;
+  const bool carry = gathered >= registers.fraction_den;
+  return {.counts = from.counts + position.counts + (carry ? 1U : 0U),
+          .accumulator = static_cast<std::uint64_t>(gathered - (carry ? registers.fraction_den : 0U))};
+}
+
+AxisState state_of(const ScheduleEnd& end, const fpga::AbRegisters& registers) noexcept {
+  return make_state(end.counts, end.counts >> edge_shift(registers));
+}
+
+AxisState mirrored(const AxisState& state) noexcept {
+  return {.edges = -state.edges,
+          .counts_high = static_cast<std::int64_t>(~static_cast<std::uint64_t>(state.counts_high) +
+                                                   (state.counts_low == 0 ? 1U : 0U)),
+          .counts_low = ~state.counts_low + 1U};
 }
 
 AxisState axis_after(const ScheduleEnd& end, const fpga::AbRegisters& registers, std::int64_t tick) noexcept {
-  const fpga::AbPosition position = fpga::position_after(registers, static_cast<std::uint64_t>(tick));
-  const bool carry = fpga::Uint128{position.accumulator} + end.accumulator >= registers.fraction_den;
-  const fpga::Uint128 counts = position.counts + (carry ? 1U : 0U);
+  const fpga::Uint128 counts = mark(end, registers, tick).counts - end.counts;
   const fpga::Uint128 begun = end.counts & ((fpga::Uint128{1} << edge_shift(registers)) - 1U);
-  return state_of(counts, static_cast<std::uint64_t>((begun + counts) >> edge_shift(registers)));
+  return make_state(counts, (begun + counts) >> edge_shift(registers));
 }
 
 }  // namespace gravure::emulator

@@ -35,9 +35,9 @@ TEST(EmulatedDeviceConfigure, TakesTheExtremes) {
   takes([](DeviceSetup& s) { s.window_slots = 0; });
   takes([](DeviceSetup& s) { s.window_slots = s.slots_per_line; });
   takes([](DeviceSetup& s) {
-    s.slots_per_line = s.ticks_per_slot = s.revolutions = s.lines_per_revolution = 1, s.window_slots = 1;
+    s.slots_per_line = s.ticks_per_slot = s.end_revolution = s.lines_per_revolution = 1, s.window_slots = 1;
   });
-  takes([](DeviceSetup& s) { s.revolutions = 4'294'967'296; });
+  takes([](DeviceSetup& s) { s.end_revolution = 4'294'967'296; });
   takes([](DeviceSetup& s) { s.slots_per_line = 16'777'215, s.window_slots = 262'144; });
   takes([](DeviceSetup& s) { s.ticks_per_slot = 65'535; });
   takes([](DeviceSetup& s) { s.clock_multiplier = 2, s.ticks_per_slot = 131'070; });
@@ -82,21 +82,21 @@ TEST(EmulatedDeviceConfigure, RefusesLineRegisters) {
 TEST(EmulatedDeviceConfigure, RefusesJobRegisters) {
   expect_refused_with([](DeviceSetup& s) { s.lines_per_revolution = 0; }, {"lines_per_revolution = 0"});
   expect_refused_with([](DeviceSetup& s) { s.lines_per_revolution = -4; }, {"lines_per_revolution = -4"});
-  expect_refused_with([](DeviceSetup& s) { s.revolutions = 0; }, {"revolutions = 0"});
+  expect_refused_with([](DeviceSetup& s) { s.end_revolution = 0; }, {"end_revolution = 0"});
   expect_refused_with([](DeviceSetup& s) { s.first_revolution = 3; }, {"first_revolution = 3", "0 to 2"});
   expect_refused_with([](DeviceSetup& s) { s.first_line = 4; }, {"first_line = 4", "0 to 3"});
   expect_refused_with([](DeviceSetup& s) { s.first_line = -1; }, {"first_line = -1", "0 to 3"});
   expect_refused_with([](DeviceSetup& s) { s.first_revolution = -1; }, {"first_revolution = -1", "0 to 2"});
   expect_refused_with([](DeviceSetup& s) { s.lines_per_revolution = 4'294'967'296; },
                       {"lines_per_revolution = 4294967296", "1 to 4294967295"});
-  expect_refused_with([](DeviceSetup& s) { s.revolutions = 4'294'967'297; }, {"revolutions = 4294967297"});
-  expect_refused_with([](DeviceSetup& s) { s.revolutions = s.lines_per_revolution = 4'294'967'295; },
-                      {"revolutions = 4294967295", "9223372036854775807 ticks"});
+  expect_refused_with([](DeviceSetup& s) { s.end_revolution = 4'294'967'297; }, {"end_revolution = 4294967297"});
+  expect_refused_with([](DeviceSetup& s) { s.end_revolution = s.lines_per_revolution = 4'294'967'295; },
+                      {"end_revolution = 4294967295", "9223372036854775807 ticks"});
 }
 
 TEST(EmulatedDeviceConfigure, SaysEveryViolationOnce) {
-  expect_refused_with([](DeviceSetup& s) { s.prescaler = 0, s.ticks_per_slot = 0, s.revolutions = 0; },
-                      {"prescaler = 0", "seeds_per_slot = 0", "\nthe board refuses revolutions = 0"});
+  expect_refused_with([](DeviceSetup& s) { s.prescaler = 0, s.ticks_per_slot = 0, s.end_revolution = 0; },
+                      {"prescaler = 0", "seeds_per_slot = 0", "\nthe board refuses end_revolution = 0"});
 }
 
 TEST(EmulatedDeviceConfigure, LeavesTheMachineAsItWasWhenRefused) {

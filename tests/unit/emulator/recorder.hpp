@@ -51,7 +51,7 @@ inline DeviceSetup small_setup() {
           .slots_per_line = 20,
           .window_slots = 13,
           .lines_per_revolution = 4,
-          .revolutions = 3};
+          .end_revolution = 3};
 }
 
 /// A frame with bits of its own and a good checksum.

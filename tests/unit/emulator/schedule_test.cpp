@@ -159,7 +159,7 @@ TEST(Schedule, LeavesTheEmulatedAxisWhereTheRuleDoesAtTickZeroAndLater) {
     }
     const ScheduleEnd end = run_schedule(schedule, registers, 2);
     const std::uint64_t before = ruled_edges(registers, schedule, ticks, 0, 0).size();
-    ASSERT_EQ(spun_up(end, registers).edges, before);
+    ASSERT_EQ(state_of(end, registers).edges, before);
     for (const std::uint64_t later : {std::uint64_t{0}, 1 + rng() % 10, rng() % 5000}) {
       ASSERT_EQ(axis_after(end, registers, static_cast<std::int64_t>(later)).edges + before,
                 ruled_edges(registers, schedule, ticks + later, 0, 0).size())

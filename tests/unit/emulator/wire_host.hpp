@@ -36,7 +36,7 @@ inline DeviceSetup wire_setup() {
           .slots_per_line = 20,
           .window_slots = 13,
           .lines_per_revolution = 4,
-          .revolutions = 3};
+          .end_revolution = 3};
 }
 
 inline void add_write(std::vector<Write>& writes, const fpga::Register& target, std::uint64_t value) {

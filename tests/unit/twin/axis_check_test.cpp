@@ -49,11 +49,12 @@ TEST(AxisCheck, ErrorIsDeviceMinusIdeal) {
     const AxisCheck check = AxisCheck::make(plan).value();
     for (int trial = 0; trial < 20; ++trial) {
       const std::int64_t lines = plan.job.revolutions * plan.rotary.lines_per_revolution;
-      const std::int64_t ordinal = trial == 0 ? 0 : trial == 1 ? lines : dice.between(0, lines);
+      const std::int64_t ordinal = trial == 0 ? 0 : trial == 1 ? lines - 1 : dice.between(0, lines - 1);
       const Rational ideal = wanted_edges_at_line(plan, ordinal);
-      const auto near = static_cast<std::uint64_t>(floor_of(ideal)) + static_cast<std::uint64_t>(dice.between(0, 5));
+      const std::int64_t near = static_cast<std::int64_t>(floor_of(ideal)) + dice.between(0, 5);
       const Rational exact = Rational(Integer(near)) - ideal;
-      ASSERT_EQ(check.exact_error_edges(ordinal, near), exact);
+      const Rational at_end = Rational(Integer(near)) - wanted_edges_at_line(plan, ordinal + 1);
+      ASSERT_EQ(check.exact_error_at_end(ordinal, near), at_end);
       ASSERT_NEAR(check.error_edges(ordinal, {.edges = near}), to_double(exact), 1e-14);
     }
   });

@@ -23,7 +23,7 @@ class LyingDevice final : public LineDevice, private PinObserver {
   DeviceStatus status() const override {
     DeviceStatus status = device_.status();
     if (last_ordinal_ == lie_.ordinal) {
-      status.axis.edges += static_cast<std::uint64_t>(lie_.edges_at_end);
+      status.axis.edges += lie_.edges_at_end;
     }
     return status;
   }
@@ -40,7 +40,7 @@ class LyingDevice final : public LineDevice, private PinObserver {
     ExecutedLine told = line;
     told.first_slot += lie_.slots;
     told.start_tick += lie_.ticks;
-    told.axis_at_start.edges += static_cast<std::uint64_t>(lie_.edges);
+    told.axis_at_start.edges += lie_.edges;
     std::vector<std::byte> fired(line.fired.begin(), line.fired.end());
     if (lie_.shift_bits) {
       for (std::size_t i = 0; i < fired.size(); ++i) {

@@ -79,7 +79,7 @@ TEST(SpinUp, PutsOutExactlyWhatThePlanSaysBeforeLineZero) {
   const AxisState before = device.status().axis_spun_up;
   EXPECT_EQ(Integer(before.counts_low), plan.spin->up.counts);
   EXPECT_EQ(Integer(before.edges), spin_edges(plan.ab, plan.spin->up));
-  EXPECT_EQ(device.status().axis.edges, 0U) << "edges of the job count from tick 0";
+  EXPECT_EQ(device.status().axis.edges, 0) << "edges of the job count from tick 0";
 }
 
 TEST(SpinUp, OneSeedClockTooLongIsSeen) {

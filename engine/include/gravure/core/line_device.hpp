@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,10 +29,12 @@ struct CarriageSetup {
   std::uint64_t increment = 0;
   std::uint64_t fraction_num = 0;
   std::uint64_t fraction_den = 1;
-  std::vector<ScheduleSegment> spin_up = {};  ///< as that of the first channel
+  std::vector<ScheduleSegment> spin_up = {};    ///< as that of the first channel
+  std::vector<ScheduleSegment> spin_down = {};  ///< likewise
 };
 
-/// What is loaded into the board's registers before a program runs; all integers, all in FPGA ticks or slots.
+/// What is loaded into the board's registers before a run (board_runs.hpp), which is a stretch of the job that the
+/// board puts out without a break; all integers, all in FPGA ticks or slots.
 struct DeviceSetup {
   int counter_bits = 32;
   std::uint64_t prescaler = 1;
@@ -39,16 +42,23 @@ struct DeviceSetup {
   std::uint64_t fraction_num = 0;
   std::uint64_t fraction_den = 1;
   CarriageSetup carriage = {};
-  /// Run from rest before tick 0, which is at its end: as `schedule_increment` and `schedule_seeds` take it, with `go`
-  /// at its begin and its seed clocks in `first_tick`. Empty: the counter begins at 0 with tick 0.
+  /// Axis 0 steps backwards: its pins A and B are exchanged, which the board takes with the counter's load, at 0. The
+  /// counter itself counts up all the same.
+  bool backward = false;
+  /// Run from rest before the first line of the run, which is at its end: as `schedule_increment` and
+  /// `schedule_seeds` take it, with `go` at its begin and its seed clocks in `first_tick`. Empty: the counter begins at
+  /// 0 with that line.
   std::vector<ScheduleSegment> spin_up = {};
+  /// Run after the last line, to rest. Empty: the axis is stopped there by other means.
+  std::vector<ScheduleSegment> spin_down = {};
   std::int64_t clock_multiplier = 1;  ///< j: FPGA ticks per seed pulse
   std::int64_t ticks_per_slot = 1;    ///< a whole multiple of j
   std::int64_t slots_per_line = 1;    ///< np
   std::int64_t window_slots = 0;      ///< pixels per line; the gate stays dark outside the window
   std::int64_t lines_per_revolution = 1;
-  std::int64_t revolutions = 1;
-  std::int64_t first_revolution = 0;  ///< start here, with the axis where the program has it at that tick
+  std::int64_t begin_revolution = 0;  ///< of the job, the first of the run: counters begin with its line 0
+  std::int64_t end_revolution = 1;    ///< after the last of the run
+  std::int64_t first_revolution = 0;  ///< start here, with the axis where the run has it at that tick
   std::int64_t first_line = 0;        ///< of first_revolution
 };
 
@@ -64,11 +74,14 @@ struct LineFrame {
 /// CRC-32C over revolution, line, first slot (64-bit little endian each) and the bits.
 std::uint32_t frame_crc32c(const LineFrame& frame) noexcept;
 
-/// Where the axis stands, by the A-B generator's own count since tick 0 of the job.
+/// Where an axis stands by the A-B generator's own count, from a place that is said with it. An axis that runs backward
+/// goes below 0: edges and counts are those of the counter, with the sign of the axis.
 struct AxisState {
-  std::uint64_t edges = 0;        ///< A-B edges put out
-  std::uint64_t counts_high = 0;  ///< the counter unwrapped, 128 bits: 2^(n-2) are an edge
+  std::int64_t edges = 0;        ///< A-B edges put out: forwards less backwards
+  std::int64_t counts_high = 0;  ///< the counter unwrapped, two's complement of 128 bits: 2^(n-2) are an edge
   std::uint64_t counts_low = 0;
+
+  friend bool operator==(const AxisState&, const AxisState&) = default;
 };
 
 /// A line as the board's pins showed it.
@@ -77,8 +90,8 @@ struct ExecutedLine {
   std::int64_t ordinal = 0;          ///< lines since tick 0 of the job
   std::int64_t first_slot = 0;       ///< of `fired`
   std::span<const std::byte> fired;  ///< window_slots bits, MSB first: what the gate let through
-  AxisState axis_at_start;
-  AxisState carriage_at_start = {};
+  AxisState axis_at_start;           ///< from where it stood when the first line of the run began
+  AxisState carriage_at_start = {};  ///< likewise
 };
 
 /// Sees the pins of an emulated board (real boards have none to show).
@@ -91,12 +104,14 @@ class PinObserver {
 struct DeviceStatus {
   std::int64_t lines_executed = 0;
   std::int64_t tick = 0;                  ///< ticks since tick 0 of the job
-  AxisState axis;                         ///< at that tick
+  AxisState axis;                         ///< at that tick, from where it stood when the run's first line began
   AxisState carriage = {};                ///< likewise
-  AxisState axis_spun_up = {};            ///< before tick 0, by the schedule from rest
+  AxisState axis_spun_up = {};            ///< there, from rest: what the schedule before the run's first line put out
   AxisState carriage_spun_up = {};        ///< likewise
-  DeviceFault fault = DeviceFault::none;  ///< sticky; the gate is closed while it stands
-  std::string detail;                     ///< what was refused and why
+  std::optional<AxisState> axis_at_rest;  ///< after the run's last line and spin-down, from rest before it
+  std::optional<AxisState> carriage_at_rest = {};  ///< likewise
+  DeviceFault fault = DeviceFault::none;           ///< sticky; the gate is closed while it stands
+  std::string detail;                              ///< what was refused and why
 };
 
 /// A machine that takes one line in each line time: what verify, unroll and emulate run programs on. Refuses what the

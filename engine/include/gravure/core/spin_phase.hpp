@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "gravure/core/line_device.hpp"
 #include "gravure/core/plan.hpp"
 
 namespace gravure {
@@ -26,6 +27,9 @@ struct SpinStart {
   std::uint64_t accumulator = 0;  ///< of the fraction
 };
 SpinStart spin_start(const AbPlan& ab, const std::optional<AxisSpin>& spin);
+
+/// The counts of a device's axis, with sign.
+Integer counts_of(const AxisState& state);
 
 /// Edges put out in the whole of a spin-up.
 Integer spin_edges(const AbPlan& ab, const SpinPlan& up);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "gravure/core/board_runs.hpp"
 #include "gravure/core/line_device.hpp"
 #include "gravure/core/program.hpp"
 
@@ -12,9 +13,6 @@ namespace gravure {
 
 /// Makes a device whose pins are watched by the observer.
 using DeviceFactory = std::function<std::unique_ptr<LineDevice>(PinObserver&)>;
-
-/// The registers a program asks for, starting at a line.
-DeviceSetup device_setup(const Plan& plan, std::int64_t first_revolution, std::int64_t first_line);
 
 /// A chunk of a program as it lies ready to be sent: its lines in time order for either direction.
 class ProgramChunk {

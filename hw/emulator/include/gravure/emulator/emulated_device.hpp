@@ -33,19 +33,19 @@ class EmulatedDevice final : public LineDevice {
  public:
   explicit EmulatedDevice(PinObserver* observer = nullptr) : observer_(observer) {}
 
-  /// Loads the registers and puts the machine at `first_line` of `first_revolution`. device, naming field, value and
-  /// allowed range, where a register would not take its value, where the job would outlast 2^63 - 1 ticks, or while a
-  /// fault stands; the machine then is as before.
+  /// Loads the registers for a run and puts the machine at `first_line` of `first_revolution`. device, naming field,
+  /// value and allowed range, where a register would not take its value, where the job would outlast 2^63 - 1 ticks, or
+  /// while a fault stands; the machine then is as before.
   Result<void> configure(const DeviceSetup& setup) override;
 
   /// Runs one line time. device where the frame is refused: in this order sequence (exactly the next line), shape (bits
   /// of the window, unused low bits 0, window inside the line), checksum; or while a fault stands, or before
-  /// configure(), or after the last line (neither of these two takes a line time).
+  /// configure(), or after the last line of the run (neither of these two takes a line time).
   Result<void> send(const LineFrame& frame) override;
 
   /// A line time in which no frame comes: latches the fault, underrun where the host still speaks, host_silence where
   /// it does not (the emulated watchdog waits for one line time), and runs a dark line. Fails as send() does; here only
-  /// before configure() and after the last line.
+  /// before configure() and after the last line of the run.
   Result<void> pass_line(DeviceFault fault, std::string detail);
 
   /// `lines_executed` counts the lines of good frames, `tick` every line time since tick 0 of the job, dark ones too.
@@ -58,6 +58,9 @@ class EmulatedDevice final : public LineDevice {
   void raise_fault(DeviceFault fault, std::string detail);
 
  private:
+  static Result<void> check_schedules(const DeviceSetup& setup);
+  AxisState turned(const AxisState& state) const;  ///< the way axis 0 of the run goes
+  AxisState axis_at(std::int64_t tick) const;
   Error refuse(DeviceFault fault, std::string detail);
   /// What is wrong with `frame`, or an empty text.
   std::string sequence_violation(const LineFrame& frame) const;
@@ -74,6 +77,7 @@ class EmulatedDevice final : public LineDevice {
   ScheduleEnd ab_start_;
   ScheduleEnd carriage_start_;
   std::int64_t ticks_per_line_ = 0;
+  std::int64_t run_tick_ = 0;  ///< of the job, at which the run's first line begins
   std::vector<std::byte> fired_;
 
   std::int64_t revolution_ = 0;  ///< of the next line

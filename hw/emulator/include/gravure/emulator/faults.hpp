@@ -28,7 +28,8 @@ struct PlannedFault {
   std::int64_t ordinal = 0;  ///< line, counted over the whole job
 };
 
-/// "line=N" (over the whole job) or "revolution=R,line=L" as a line over the whole job. bad_argument or out_of_range,
+/// "line=N" (over the whole job) or "revolution=R,line=L" as a line over the whole job, which
+/// ends where the setup does. bad_argument or out_of_range,
 /// naming what is allowed.
 Result<std::int64_t> parse_line_place(std::string_view text, const DeviceSetup& setup);
 /// "KIND@" and a place.
@@ -66,6 +67,7 @@ class FaultyHost final : public LineDevice {
       : device_(&device), faults_(std::move(faults)), acknowledgements_(std::move(acknowledgements)) {}
   Result<void> send_badly(FaultKind kind, const LineFrame& frame, std::int64_t ordinal);
   void note(std::int64_t ordinal);
+  void acknowledge_to(std::int64_t ordinal);
 
   EmulatedDevice* device_;
   std::vector<PlannedFault> faults_;  ///< by line

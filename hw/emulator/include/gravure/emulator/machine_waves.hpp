@@ -32,7 +32,7 @@ class WaveSink {
 class MachineWaves final : public PinObserver {
  public:
   struct Setup {
-    DeviceSetup device;
+    DeviceSetup device;  ///< of the first run that is shown
     std::int64_t slots_per_microvector = 1;
     std::int64_t ticks_per_seed_clock = 1;  ///< j
     std::uint64_t first_tick = 0;           ///< of the window
@@ -42,6 +42,8 @@ class MachineWaves final : public PinObserver {
   /// `setup.device` is one that EmulatedDevice takes; the sink must outlive this.
   MachineWaves(const Setup& setup, WaveSink& sink);
 
+  /// The lines that follow are those of another run, whose counters begin with its first line: A and B may jump there.
+  void start_run(const DeviceSetup& device);
   /// The lines that touch the window, in order and without a gap; others before it or after it are passed over.
   void on_line(const ExecutedLine& line) override;
   /// What is left of the window after the last line.
@@ -51,6 +53,7 @@ class MachineWaves final : public PinObserver {
 
  private:
   void slot(const ExecutedLine& line, std::int64_t number, std::uint64_t tick);
+  void take_edge();
   void edges_to(std::uint64_t tick);
   void fall_by(std::uint64_t tick);
   void set(std::uint64_t tick, Signal signal, std::uint64_t value);
@@ -58,9 +61,10 @@ class MachineWaves final : public PinObserver {
 
   Setup setup_;
   WaveSink& sink_;
-  fpga::AbEdges edges_;
-  fpga::AbEdge next_edge_;
-  bool edges_left_ = true;
+  fpga::AbEdges edges_;     ///< of the run, on clocks from its first tick
+  fpga::AbEdge next_edge_;  ///< on a tick of the job, as the pins show it
+  std::uint64_t run_tick_ = 0;
+  bool edges_left_ = false;
   std::uint64_t strobes_fall_ = 0;
   bool strobes_high_ = false;
   SignalValues values_{};

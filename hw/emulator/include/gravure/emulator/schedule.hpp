@@ -18,8 +18,10 @@ inline constexpr std::size_t kScheduleSegments = 256;
 class AxisWalk {
  public:
   AxisWalk() = default;
-  /// From a counter of 0. check(registers) must be none.
-  explicit AxisWalk(const fpga::AbRegisters& registers) noexcept : registers_(registers) {}
+  /// From a counter of `counts`, its fraction at `accumulator`. check(registers) must be none.
+  explicit AxisWalk(const fpga::AbRegisters& registers, fpga::Uint128 counts = 0,
+                    std::uint64_t accumulator = 0) noexcept
+      : registers_(registers), counts_(counts), accumulator_(accumulator) {}
   /// Prescaler and fraction begin anew; the counter goes on from where it is. check(registers) must be none.
   void load(const fpga::AbRegisters& registers) noexcept;
   /// From the next step on; at most max_increment().
@@ -39,23 +41,32 @@ class AxisWalk {
   std::uint64_t since_step_ = 0;   ///< ticks since the prescaler's last step
 };
 
-/// Where a channel's schedule leaves its counter at tick 0.
+/// Where a channel's schedule leaves its counter.
 struct ScheduleEnd {
   fpga::Uint128 counts = 0;       ///< put out from rest
   std::uint64_t accumulator = 0;  ///< of the fraction
 };
 
 /// device where a segment does not fit its registers, is no whole steps of the prescaler, or the schedule does not fit
-/// the board's list or lasts longer than `first_tick` counts. `field` names it.
+/// the board's list. `field` names it.
 Result<void> check_schedule(const std::string& field, const std::vector<ScheduleSegment>& segments,
                             const fpga::AbRegisters& registers, std::int64_t ticks_per_seed);
 
-/// Runs a schedule that check_schedule() passes, from a counter of 0.
-ScheduleEnd run_schedule(const std::vector<ScheduleSegment>& segments, const fpga::AbRegisters& registers,
-                         std::int64_t ticks_per_seed) noexcept;
+/// device where a spin-up lasts longer than `first_tick` counts.
+Result<void> check_lead(const std::string& field, const std::vector<ScheduleSegment>& segments);
 
-/// The counter's state at tick 0.
-AxisState spun_up(const ScheduleEnd& end, const fpga::AbRegisters& registers) noexcept;
+/// Runs a schedule that check_schedule() passes, from where the counter stands.
+ScheduleEnd run_schedule(const std::vector<ScheduleSegment>& segments, const fpga::AbRegisters& registers,
+                         std::int64_t ticks_per_seed, const ScheduleEnd& from = {}) noexcept;
+
+/// `ticks` ticks of marking from there.
+ScheduleEnd mark(const ScheduleEnd& from, const fpga::AbRegisters& registers, std::int64_t ticks) noexcept;
+
+/// The counter's state, from rest.
+AxisState state_of(const ScheduleEnd& end, const fpga::AbRegisters& registers) noexcept;
+
+/// An axis that runs the other way.
+AxisState mirrored(const AxisState& state) noexcept;
 
 /// The channel `tick` ticks after that, its edges counted from there.
 AxisState axis_after(const ScheduleEnd& end, const fpga::AbRegisters& registers, std::int64_t tick) noexcept;
