@@ -107,7 +107,7 @@ bool BoardMachine::can_run() const noexcept {
     return false;
   }
   if (faulty()) {
-    return started_ && (faults_ & bit_of(DeviceFault::underrun)) == 0;
+    return (started_ || gone_) && (faults_ & bit_of(DeviceFault::underrun)) == 0;
   }
   return stream_.level() != 0 || gone_ || frame_lost_;
 }
@@ -142,9 +142,7 @@ bool BoardMachine::next_event(std::uint64_t clock) {
     return false;
   }
   if (faulty()) {
-    if (started_ && dark_until_ <= clock) {
-      faults_ |= bit_of(DeviceFault::underrun);  // dark lines run out as well
-    }
+    run_dark(clock);
     return false;
   }
   if (!control(kRun)) {
@@ -171,6 +169,16 @@ bool BoardMachine::next_event(std::uint64_t clock) {
     close_gate(DeviceFault::underrun, 0);
   }
   return false;
+}
+
+/// A fault stands: lines begin and run out, but none fires.
+void BoardMachine::run_dark(std::uint64_t clock) {
+  if (control(kRun) && !started_ && start_by(clock)) {
+    dark_until_ = clock_ + stream_.lines() * line_seeds();
+  }
+  if (started_ && dark_until_ <= clock) {
+    faults_ |= bit_of(DeviceFault::underrun);
+  }
 }
 
 /// Whether first_tick has come by then.
@@ -351,10 +359,12 @@ std::uint16_t BoardMachine::write_register(std::uint8_t address, std::uint32_t v
   catch_up(clock);
   last_host_ = clock_;
   const bool ran = control(kRun);
+  const std::uint32_t slots = slots_begun();
   const std::uint16_t command = registers_.write(address, value);
   obey(command);
   if (ran && !control(kRun)) {
-    stop();
+    cut_short(slots);
+    gone_ = started_ = positioned_ = false;
   }
   return command;
 }
@@ -415,12 +425,6 @@ void BoardMachine::acknowledge() noexcept {
   overflow_ = line_runs_ = partial_ = positioned_ = frame_lost_ = false;
   due_.reset();
   stream_.flush();
-}
-
-/// Slots run no more.
-void BoardMachine::stop() {
-  cut_short(slots_begun());
-  gone_ = started_ = positioned_ = false;
 }
 
 std::uint32_t BoardMachine::fifo_level() const noexcept {

@@ -75,12 +75,12 @@ class BoardMachine {
   void obey(std::uint16_t command);
   void load_axis(std::size_t axis);
   void acknowledge() noexcept;
-  void stop();
 
   void catch_up(std::uint64_t clock);
   void run_until(std::uint64_t clock);
   bool next_event(std::uint64_t clock);
   bool start_by(std::uint64_t clock);
+  void run_dark(std::uint64_t clock);
   void move_clock(std::uint64_t clock);
 
   bool has_room() const noexcept;
