@@ -5,7 +5,7 @@
 // slot_divider, line_sequencer and direction_delay; line_progress says how far lines came; two axes by ab_generator, each
 // with its increment_schedule; scanner_clock; index_reference lets the lines follow the axis; watchdog and fault_latch close
 // the gate.
-// Axis 1 has a fraction where FRACTION_1 is 1; with two the logic does not close on an HX8K.
+// Axis 1 has a fraction where FRACTION_1 is 1; with two the logic does not fit on an HX8K.
 // Once lines have begun they follow without a gap for as long as slots run: the machine never waits, a line that is not
 // there in time is an underrun.
 // Fails dark: any fault, the interlock or a stop closes the gate; command bit 0 acknowledges, and drops all that was queued.

@@ -30,7 +30,7 @@ class Synchro {
  public:
   static constexpr std::size_t kAxes = 2;
   static constexpr AbGenerator::Widths kAxisWidths{.bits = 32, .prescaler_bits = 32, .fraction_bits = 34};
-  /// Axis 1 has no fraction (FRACTION_1 = 0): with two of them the logic does not close 82 MHz on an HX8K.
+  /// Axis 1 has no fraction (FRACTION_1 = 0): with two of them the logic does not fit on an HX8K.
   static constexpr AbGenerator::Widths kAxis1Widths{
       .bits = 32, .prescaler_bits = 32, .fraction_bits = 34, .fraction = false};
 
