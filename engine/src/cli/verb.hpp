@@ -92,5 +92,6 @@ void add_emulate(CLI::App& app, Command& command);
 void add_trajectory(CLI::App& app, Command& command);
 void add_export(CLI::App& app, Command& command);
 void add_calibrate(CLI::App& app, Command& command);
+void add_devices(CLI::App& app, Command& command);
 
 }  // namespace gravure::cli
