@@ -123,7 +123,7 @@ bool LinePath::is_long_enough(Direction before) const noexcept {
 }
 
 /// The least turn_slots with which both turns are long enough, lines rounded up and windows placed as the planner does:
-/// tried one after the other, for where the set-points fall decides as well.
+/// tried one after the other, for where the set-points fall decides as well; all that round up to one line are alike.
 std::int64_t LinePath::enough_turn_slots() const {
   LinePath trial = *this;
   const Direction back = other(Direction::forward);
@@ -132,8 +132,8 @@ std::int64_t LinePath::enough_turn_slots() const {
   for (const MirrorTurn& turn : {turns_[0][0], turns_[0][1], turns_[1][0], turns_[1][1]}) {
     shortest_s = std::max(shortest_s, turn.shortest_s);
   }
-  for (auto turn = std::max<std::int64_t>(0, static_cast<std::int64_t>(shortest_s / timing_.slot_s()) - 4 * step);;
-       ++turn) {
+  auto turn = std::max<std::int64_t>(0, static_cast<std::int64_t>(shortest_s / timing_.slot_s()) - 4 * step);
+  for (;; turn = trial.timing_.slots - trial.timing_.pixels + 1) {
     LineTiming& timing = trial.timing_;
     timing.slots = (timing.pixels + turn + step - 1) / step * step;
     timing.forward_first_slot = (timing.slots - timing.pixels) / 2;

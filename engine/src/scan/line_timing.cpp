@@ -7,8 +7,6 @@
 namespace gravure::scan {
 namespace {
 
-constexpr std::int64_t kMostSlots = 10'000'000;
-
 Result<void> check_range(const char* field, std::int64_t value, std::int64_t low, std::int64_t high) {
   if (value >= low && value <= high) {
     return {};
@@ -36,7 +34,7 @@ Result<void> check_timing(const LineTiming& timing) {
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
   GRAVURE_CHECK(check_range("fpga_hz", timing.fpga_hz, 1, kMost));
   GRAVURE_CHECK(check_range("ticks_per_slot", timing.ticks_per_slot, 1, 1'000'000'000));
-  GRAVURE_CHECK(check_range("slots", timing.slots, 1, kMostSlots));
+  GRAVURE_CHECK(check_range("slots", timing.slots, 1, kMostSlotsPerLine));
   GRAVURE_CHECK(check_range("slots_per_microvector", timing.slots_per_microvector, 1, timing.slots));
   if (timing.slots % timing.slots_per_microvector != 0) {
     return Error{ErrorCode::bad_argument,

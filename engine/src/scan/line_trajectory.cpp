@@ -30,6 +30,46 @@ Result<std::vector<SetPoint>> set_points(const LineTrajectory& trajectory, Direc
   return points;
 }
 
+Result<void> check_size(const LineTiming& timing) {
+  const std::int64_t points = timing.slots / timing.slots_per_microvector;
+  if (points > kMostPulsesPerLine) {
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("scan: {} set-points a line, one every slots_per_microvector = {} of its {} slots: at most "
+                    "{} fit; take more slots_per_microvector or fewer turn_slots",
+                    points, timing.slots_per_microvector, timing.slots, kMostPulsesPerLine)};
+  }
+  if (timing.pixels > kMostPulsesPerLine) {
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("scan: {} pixels a line of field_mm: at most {} fit; take a larger pixel pitch, or a smaller "
+                    "field and more bands",
+                    timing.pixels, kMostPulsesPerLine)};
+  }
+  return {};
+}
+
+/// The field grid may shift an order for a place within the field out of it.
+Result<void> check_orders(const LineTrajectory& trajectory, Direction direction) {
+  const LinePath& path = trajectory.path;
+  const LineTiming& timing = path.timing();
+  const double field_mm = path.geometry().machine.head.field_mm;
+  const double first = static_cast<double>(timing.first_slot(direction));
+  for (std::int64_t i = 0; i < timing.pixels; ++i) {
+    const FieldPoint wanted = path.on_line(direction, first + static_cast<double>(i));
+    GRAVURE_TRY(const GridPoint order, trajectory.options.field_grid->command_for({wanted.u_mm, wanted.v_mm}));
+    const double farthest = std::max(std::abs(order.u_mm), std::abs(order.v_mm));
+    if (farthest > field_mm / 2) {
+      return Error{ErrorCode::out_of_range,
+                   fmt::format("scan: field_grid has the pulse at U = {:.6g}, V = {:.6g} mm ordered to U = {:.6g}, V = "
+                               "{:.6g} mm, outside the field: field_mm = {} reaches {}; it takes a field of {:.6g} mm, "
+                               "or fewer pixels",
+                               wanted.u_mm, wanted.v_mm, order.u_mm, order.v_mm, field_mm, field_mm / 2, 2 * farthest)};
+    }
+  }
+  return {};
+}
+
 struct Lag {
   std::int64_t ticks = 0;
   Rational remainder_ticks = 0;
@@ -92,9 +132,22 @@ void warn_of_absent_limits(const ScanHead& head, std::vector<std::string>& warni
   }
 }
 
-void warn_of_reach(const LinePath& path, std::vector<std::string>& warnings) {
-  const double field_mm = path.geometry().machine.head.field_mm;
-  const double reach_mm = path.reach_mm();
+/// How far from the centre either mirror is ordered, field correction included.
+double ordered_mm(const LineTrajectory& trajectory) {
+  std::int64_t most = 0;
+  for (const std::vector<SetPoint>* points : {&trajectory.forward, &trajectory.reverse}) {
+    for (const SetPoint& point : *points) {
+      most = std::max({most, std::abs(std::int64_t{point.u_count}), std::abs(std::int64_t{point.v_count})});
+    }
+  }
+  return static_cast<double>(most) * trajectory.resolution_mm;
+}
+
+void warn_of_reach(const LineTrajectory& trajectory, std::vector<std::string>& warnings) {
+  const double field_mm = trajectory.path.geometry().machine.head.field_mm;
+  const double reach_mm = trajectory.options.field_grid
+                              ? std::max(trajectory.path.reach_mm(), ordered_mm(trajectory) - trajectory.resolution_mm)
+                              : trajectory.path.reach_mm();
   if (reach_mm > field_mm / 2) {
     warnings.push_back(fmt::format(
         "the turn swings to {:.6g} mm from the centre, beyond the {:.6g} mm of scanner.field_mm = {:.6g}: the scanner "
@@ -133,6 +186,7 @@ Result<LineTrajectory> make_line_trajectory(const LineTiming& timing, const Line
                              geometry.at_centre.size(), geometry.per_slot.size(), geometry.machine.joints.size())};
   }
   GRAVURE_CHECK(check_joint_speeds(timing, geometry));
+  GRAVURE_CHECK(check_size(timing));
   const ScanHead& head = geometry.machine.head;
   Lag lag;
   if (options.lag_compensation) {
@@ -150,6 +204,10 @@ Result<LineTrajectory> make_line_trajectory(const LineTiming& timing, const Line
                             {},
                             0,
                             {}};
+  if (options.field_grid) {
+    GRAVURE_CHECK(check_orders(trajectory, Direction::forward));
+    GRAVURE_CHECK(timing.bidirectional ? check_orders(trajectory, Direction::reverse) : Result<void>());
+  }
   GRAVURE_TRY(trajectory.forward, set_points(trajectory, Direction::forward));
   if (timing.bidirectional) {
     GRAVURE_TRY(trajectory.reverse, set_points(trajectory, Direction::reverse));
@@ -161,7 +219,7 @@ Result<LineTrajectory> make_line_trajectory(const LineTiming& timing, const Line
   if (options.field_grid) {
     trajectory.field_grid_error_um = options.field_grid->interpolation_error_um();
   }
-  warn_of_reach(trajectory.path, trajectory.warnings);
+  warn_of_reach(trajectory, trajectory.warnings);
   warn_of_absent_limits(head, trajectory.warnings);
   return trajectory;
 }

@@ -76,7 +76,6 @@ Result<ErrorModel> ErrorModel::make(const Plan& plan, const scan::LineTrajectory
         to_double(Rational(plan.carriage->feed_pixels / Rational(plan.rotary.lines_per_revolution)));
   }
   model.column_um_ = to_double(plan.line.pixel_pitch_um);
-  model.scanner_ = {LineErrors::none(plan.line.pixels), LineErrors::none(plan.line.pixels)};
   if (trajectory != nullptr) {
     ScannerTerms terms{twin.galvo_resolution, twin.microvectors, twin.cross_scan, twin.lag, plan.carriage.has_value()};
     model.scanner_ = scanner_errors(*trajectory, terms);
@@ -223,15 +222,18 @@ inline PulseError ErrorModel::landed(const Line& line, std::int64_t index, const
   const auto i = static_cast<std::size_t>(index);
   const auto slots = static_cast<double>(index);
   const double pixel = line.reverse ? static_cast<double>(plan_.line.pixels - 1) - slots : slots;
-  ShiftedSurface::Hit hit{errors.across_um[i], 0};
+  const auto of = [&errors, i](const std::vector<double>& values) { return errors.is_none() ? 0.0 : values[i]; };
+  const double slope_across = of(errors.slope_across);
+  const double slope_along = of(errors.slope_along);
+  ShiftedSurface::Hit hit{of(errors.across_um), 0};
   if (line.surface) {
-    hit = line.surface->hit(errors.across_um[i], errors.slope_across[i]);
+    hit = line.surface->hit(hit.across_um, slope_across);
   }
   PulseError error;
   error.across_um =
       hit.across_um + axis_->off_um(axis) + line.axis_drift_um + axis_->drift_um_per_slot() * slots - line.onwards_um;
   error.along_um =
-      errors.along_um[i] - growth_ * (line.first_column_um + pixel * column_um_) + hit.rise_um * errors.slope_along[i];
+      of(errors.along_um) - growth_ * (line.first_column_um + pixel * column_um_) + hit.rise_um * slope_along;
   if (!line.rounded_off_um.empty()) {
     const RoundedOrders& orders = errors.rounded;
     const std::size_t before = orders.order_before[i];
@@ -243,8 +245,7 @@ inline PulseError ErrorModel::landed(const Line& line, std::int64_t index, const
   }
   // Along the beam it is as much further to a surface that rises as the beam leans.
   error.defocus_um =
-      errors.defocus_um[i] + hit.rise_um * std::sqrt(1 + errors.slope_across[i] * errors.slope_across[i] +
-                                                     errors.slope_along[i] * errors.slope_along[i]);
+      of(errors.defocus_um) + hit.rise_um * std::sqrt(1 + slope_across * slope_across + slope_along * slope_along);
   return error;
 }
 

@@ -126,18 +126,13 @@ std::vector<double> RoundedOrders::rounded_off_um(double shift_um, double count_
   return off;
 }
 
-LineErrors LineErrors::none(std::int64_t pixels) {
-  LineErrors errors;
-  for (std::vector<double>* part :
-       {&errors.along_um, &errors.across_um, &errors.defocus_um, &errors.slope_along, &errors.slope_across}) {
-    part->assign(static_cast<std::size_t>(pixels), 0);
-  }
-  return errors;
-}
-
 ScannerErrors scanner_errors(const LineTrajectory& trajectory, const ScannerTerms& terms) {
   const scan::LineTiming& timing = trajectory.path.timing();
-  ScannerErrors both = {LineErrors::none(timing.pixels), {}};
+  ScannerErrors both;
+  for (std::vector<double>* part :
+       {&both[0].along_um, &both[0].across_um, &both[0].defocus_um, &both[0].slope_along, &both[0].slope_across}) {
+    part->assign(static_cast<std::size_t>(timing.pixels), 0);
+  }
   fill(trajectory, Direction::forward, terms, both[0]);
   both[1] = both[0];
   if (timing.bidirectional) {

@@ -56,8 +56,8 @@ struct LineErrors {
   Interval slope_along_range;
   Interval slope_across_range;
 
-  /// Nothing known of a scanner: no error, light along the normal.
-  static LineErrors none(std::int64_t pixels);
+  /// Nothing is known of a scanner: no error, light along the normal.
+  bool is_none() const noexcept { return across_um.empty(); }
 };
 
 /// Both directions, [0] forward; [1] is as [0] where all lines run forward.

@@ -39,6 +39,41 @@ TEST(SetPoints, LeadByTheLagInTicks) {
   EXPECT_NEAR(trajectory.forward.back().u_mm, beyond.u_mm, 1e-12) << "the last one belongs to the next line already";
 }
 
+TEST(SetPoints, APulseThatTheGridOrdersOutsideTheFieldIsRefused) {
+  FieldGrid grid{2, 2, -40, 40, -40, 40, {{5.9, 0}, {5.9, 0}, {5.9, 0}, {5.9, 0}}};  // the roller's lines reach 14 mm
+  kinematics::ScanHead head = roller_head();
+  const auto made = make_line_trajectory(roller_timing(), roller_geometry(roller_timing(), head), {true, true, grid});
+  ASSERT_TRUE(made) << made.error().message;
+  ASSERT_FALSE(made.value().warnings.empty()) << "the turn is ordered beyond it";
+  for (GridPoint& error : grid.errors) {
+    error.u_mm = 6.1;
+  }
+  const auto beyond = make_line_trajectory(roller_timing(), roller_geometry(roller_timing(), head), {true, true, grid});
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(beyond.error().message,
+            "scan: field_grid has the pulse at U = -13.996, V = 0.00259185 mm ordered to U = -20.096, V = 0.00259185 "
+            "mm, outside the field: field_mm = 40 reaches 20; it takes a field of 40.192 mm, or fewer pixels");
+}
+
+TEST(SetPoints, MoreThanFitIntoMemoryAreRefusedByTheirKeys) {
+  LineTiming timing = roller_timing();
+  timing.slots = 1'000'000;
+  timing.slots_per_microvector = 1;
+  const auto made = make_line_trajectory(timing, roller_geometry(timing), {});
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(made.error().message,
+            "scan: 1000000 set-points a line, one every slots_per_microvector = 1 of its 1000000 slots: at most 524288 "
+            "fit; take more slots_per_microvector or fewer turn_slots");
+  timing.slots_per_microvector = 20;
+  timing.pixels = 600'000;
+  const auto wide = make_line_trajectory(timing, roller_geometry(timing), {});
+  ASSERT_FALSE(wide);
+  EXPECT_EQ(wide.error().message.substr(0, 45), "scan: 600000 pixels a line of field_mm: at mo")
+      << wide.error().message;
+}
+
 TEST(SetPoints, BeyondTheFieldInTheTurnAreCountsLikeOthersWithAWarning) {
   kinematics::ScanHead head = roller_head();
   const LineTrajectory inside =

@@ -57,8 +57,12 @@ struct LineTrajectory {
   }
 };
 
+/// Lines of more pulses, or of more set-points, are refused: so many fit into the memory that commands may take.
+inline constexpr std::int64_t kMostPulsesPerLine = std::int64_t{1} << 19;
+
 /// Fails as check_timing(), check_machine() and LinePath::plan() do, and with out_of_range where the lag is longer than
-/// a line or field correction leaves the field.
+/// a line, a line has more pulses or set-points than kMostPulsesPerLine, or a pulse that the field grid shifts would be
+/// ordered outside the field.
 Result<LineTrajectory> make_line_trajectory(const LineTiming& timing, const LineGeometry& geometry,
                                             const TrajectoryOptions& options);
 
