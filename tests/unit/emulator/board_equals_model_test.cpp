@@ -167,7 +167,7 @@ Trial draw_trial(gravure::test::Dice& dice) {
   const std::int64_t seeds_per_slot = dice.between(std::max<std::int64_t>(least, 4), least + 6);
   setup.ticks_per_slot = 2 * seeds_per_slot;
   setup.lines_per_revolution = dice.between(1, 5);
-  setup.revolutions = 20;
+  setup.end_revolution = 20;
   setup.first_revolution = dice.between(0, 3);
   setup.first_line = dice.between(0, setup.lines_per_revolution - 1);
   trial.lines = dice.between(1, 12);

@@ -327,7 +327,7 @@ TEST_F(BoardInAFolder, RefusesAFolderItCannotWrite) {
 }
 
 TEST_F(BoardInAFolder, OutlivesAKilledHost) {
-  setup_.revolutions = 1'000'000;
+  setup_.end_revolution = 1'000'000;
   gravure::test::Dice dice;
   SCOPED_TRACE(gravure::test::Dice::note());
   for (int trial = 0; trial < 20; ++trial) {
