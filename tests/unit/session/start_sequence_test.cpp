@@ -36,7 +36,7 @@ DeviceSetup small_setup() {
   setup.slots_per_line = 120;
   setup.window_slots = 13;
   setup.lines_per_revolution = 4;
-  setup.revolutions = 3;
+  setup.end_revolution = 3;
   return setup;
 }
 
