@@ -84,22 +84,17 @@ class Host {
  private:
   static constexpr std::uint64_t kFirstTick = 3;
 
-  void set(const char* name, std::uint64_t value) {
-    const auto& ports = board_.inputs();
+  static std::size_t place(const std::vector<Port>& ports, const char* name) {
     const auto port = std::find_if(ports.begin(), ports.end(), [name](const Port& p) { return p.name == name; });
-    in_[static_cast<std::size_t>(port - ports.begin())] = value;
+    return static_cast<std::size_t>(port - ports.begin());
   }
-  std::uint64_t get(const char* name) const {
-    const auto& ports = board_.outputs();
-    const auto port = std::find_if(ports.begin(), ports.end(), [name](const Port& p) { return p.name == name; });
-    return out_[static_cast<std::size_t>(port - ports.begin())];
-  }
+  void set(const char* name, std::uint64_t value) { in_[place(board_.inputs(), name)] = value; }
 
   /// A seed clock.
   void clock() {
     board_.step(in_, out_);
     board_.step(in_, out_);
-    if (shown_ && get("gate") != 0) {
+    if (shown_ && out_[gate_] != 0) {
       const std::uint64_t slot = passed_before(now_ + 1);
       ASSERT_GT(slot, first_ * job_->slots) << "the gate is open before the first line";
       run_.fired[slot - 1] = true;
@@ -121,7 +116,7 @@ class Host {
   std::uint64_t read(const fpga::Register& from) {
     set("address", from.address);
     idle(fpga::kReadLatency);
-    return get("read_data");
+    return out_[place(board_.outputs(), "read_data")];
   }
   void byte(std::uint64_t data) {
     set("in_valid", 1);
@@ -202,6 +197,7 @@ class Host {
   Machine& board_;
   std::vector<std::uint64_t> in_;
   std::vector<std::uint64_t> out_;
+  std::size_t gate_ = place(board_.outputs(), "gate");
   std::uint64_t now_ = 0;  ///< seed clocks that have passed
   bool shown_ = false;     ///< the gate is looked at
   const Job* job_ = nullptr;
@@ -309,8 +305,10 @@ TEST_P(Resume, FiresEveryPulseOnceWhereALineIsCutAgainAndAgain) {
     const std::uint64_t seeds = 1 + dice.word() % 7;
     const Job job = random_job(dice, seeds, dice.word() % seeds);
     std::vector<std::pair<Cut, std::uint64_t>> cuts;
-    for (int at = 0; at < 6; ++at) {
-      cuts.emplace_back(static_cast<Cut>(1 + dice.word() % 4), dice.word() % (2 * job.slots * seeds + 12));
+    cuts.resize(6);
+    for (auto& [cut, after] : cuts) {
+      cut = static_cast<Cut>(1 + dice.word() % 4);
+      after = dice.word() % (2 * job.slots * seeds + 12);
     }
     expect_every_pulse_once(host, job, cuts, partial_lines);
     if (HasFatalFailure()) {
