@@ -1,0 +1,68 @@
+#include "gravure/replay/replay_link.hpp"
+
+#include "gravure/core/crc32c.hpp"
+#include "gravure/core/file_output.hpp"
+
+namespace gravure::replay {
+
+Result<std::unique_ptr<ReplayLink>> ReplayLink::open(const std::string& path) {
+  GRAVURE_TRY(const std::string text, read_file(path, kMostSessionBytes));
+  GRAVURE_TRY(Session session, parse_session(text, path));
+  return std::make_unique<ReplayLink>(std::move(session), path);
+}
+
+Result<const Exchange*> ReplayLink::answer(const Exchange& asked) {
+  if (refused_) {
+    return *refused_;
+  }
+  const std::string says = "the host says \"" + request_text(asked) + "\", ";
+  if (at_end()) {
+    refused_ = Error{ErrorCode::device, name_ + ": " + says + "but the recorded session ends before"};
+    return *refused_;
+  }
+  const Exchange& recorded = session_.exchanges[next_];
+  if (request_text(recorded) != request_text(asked)) {
+    refused_ = Error{ErrorCode::device, name_ + ", line " + std::to_string(recorded.line) + ": " + says +
+                                            "but said \"" + request_text(recorded) + "\" when this was recorded"};
+    return *refused_;
+  }
+  ++next_;
+  if (recorded.error) {
+    return *recorded.error;
+  }
+  return &recorded;
+}
+
+Result<std::uint32_t> ReplayLink::read_register(std::uint8_t address) {
+  GRAVURE_TRY(const Exchange* recorded, answer({.request = Request::read, .address = address}));
+  return recorded->value;
+}
+
+Result<void> ReplayLink::write_register(std::uint8_t address, std::uint32_t value) {
+  GRAVURE_CHECK(answer({.request = Request::write, .address = address, .value = value}));
+  return {};
+}
+
+Result<std::size_t> ReplayLink::send(std::span<const std::byte> stream, Milliseconds /*patience*/) {
+  GRAVURE_TRY(
+      const Exchange* recorded,
+      answer({.request = Request::send, .bytes = stream.size(), .checksum = ~crc32c_continue(kCrc32cStart, stream)}));
+  return static_cast<std::size_t>(recorded->taken);
+}
+
+Result<bool> ReplayLink::drain(Milliseconds /*patience*/) {
+  GRAVURE_TRY(const Exchange* recorded, answer({.request = Request::drain}));
+  return recorded->drained;
+}
+
+Result<void> ReplayLink::abandon() {
+  GRAVURE_CHECK(answer({.request = Request::abandon}));
+  return {};
+}
+
+Result<std::optional<BoardStatus>> ReplayLink::next_status(Milliseconds /*patience*/) {
+  GRAVURE_TRY(const Exchange* recorded, answer({.request = Request::status}));
+  return recorded->status;
+}
+
+}  // namespace gravure::replay
