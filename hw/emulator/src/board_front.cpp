@@ -8,13 +8,12 @@
 #include "gravure/core/crc32c.hpp"
 #include "gravure/emulator/board_name.hpp"
 #include "gravure/fpga/register_map.hpp"
+#include "gravure/protocol/start_sequence.hpp"
 
 namespace gravure::emulator {
 namespace {
 
 __extension__ using Wide = unsigned __int128;
-
-constexpr std::uint32_t kAcknowledge = 1;
 
 BoardMachine::Setup setup_of(const BoardOptions& options) {
   return {.capacity_bytes = options.capacity_bytes,
@@ -166,7 +165,7 @@ std::size_t EmulatedBoard::Front::apply(const Record& event) {
 
 /// After an acknowledge the state is short: the events before it need not be kept.
 void EmulatedBoard::Front::obey(std::uint16_t commands) {
-  if ((commands & kAcknowledge) != 0 && machine_->rests() && folder_ && !replays_ && health_) {
+  if ((commands & protocol::kCommandAcknowledge) != 0 && machine_->rests() && folder_ && !replays_ && health_) {
     begin_folder(true);
   }
 }
@@ -202,9 +201,10 @@ void EmulatedBoard::Front::begin_folder(bool with_state) {
 
 void EmulatedBoard::Front::on_line(const ExecutedLine& line) {
   if (folder_ && health_) {
-    const std::int64_t lines = machine_->settings().lines_per_revolution;
-    const Result<bool> fresh = folder_->fire(static_cast<std::uint32_t>(line.ordinal / lines),
-                                             static_cast<std::uint32_t>(line.ordinal % lines), line);
+    const std::uint64_t lines = machine_->settings().lines_per_revolution;
+    const auto ordinal = static_cast<std::uint64_t>(line.ordinal);
+    const Result<bool> fresh =
+        folder_->fire(static_cast<std::uint32_t>(ordinal / lines), static_cast<std::uint32_t>(ordinal % lines), line);
     keep(fresh ? Result<void>() : Result<void>(fresh.error()));
     if (!fresh || !fresh.value()) {
       return;

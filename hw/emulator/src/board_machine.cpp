@@ -3,35 +3,16 @@
 #include <algorithm>
 #include <utility>
 
-#include "gravure/fpga/ab_generator.hpp"
-#include "gravure/fpga/line_progress.hpp"
 #include "gravure/fpga/pulse_gate.hpp"
-#include "gravure/protocol/status_message.hpp"
+#include "gravure/protocol/start_sequence.hpp"
 
 namespace gravure::emulator {
 namespace {
 
-__extension__ using Wide = unsigned __int128;
-
-constexpr std::uint64_t kTicksPerSeed = fpga::AbGenerator::kClockMultiplier;
 constexpr std::uint64_t kForEver = ~std::uint64_t{0};
 constexpr std::size_t kQueuedLines = 16;
 
-/// Bits of the control register.
-constexpr std::uint32_t kRun = 1;
-constexpr std::array<std::uint32_t, 2> kEnable{2, 8};
-constexpr std::uint32_t kWatch = 4;
-constexpr std::uint32_t kTimed = 16;
-constexpr std::uint32_t kBackward = 32;
-
-/// Bits of the command register.
-constexpr std::uint16_t kAcknowledge = 1;
-constexpr std::array<std::uint16_t, 2> kLoad{2, 16};
-constexpr std::array<std::uint16_t, 2> kIncrement{4, 32};
-constexpr std::uint16_t kPosition = 8;
-constexpr std::uint16_t kGo = 64;
-constexpr std::array<std::uint16_t, 2> kAppend{128, 256};
-constexpr std::uint16_t kEmpty = 512;
+constexpr std::array<std::uint32_t, 2> kEnable{protocol::kControlAxis0, protocol::kControlAxis1};
 
 std::uint8_t bit_of(DeviceFault fault) noexcept {
   return static_cast<std::uint8_t>(1U << (static_cast<unsigned>(fault) - 1U));
@@ -51,10 +32,10 @@ LineStream::Shape BoardMachine::shape() const noexcept {
   return {s.window_slots, s.slots_per_line, s.lines_per_revolution};
 }
 
-/// Over the whole job.
+/// Over the whole job; of any registers, so that it may be more than 63 bits hold.
 std::int64_t BoardMachine::ordinal_of(LineStream::Place place) const noexcept {
-  const std::int64_t lines = registers_.settings().lines_per_revolution;
-  return std::int64_t{place.revolution} * lines + place.line;
+  const std::uint64_t lines = registers_.settings().lines_per_revolution;
+  return static_cast<std::int64_t>(place.revolution * lines + place.line);
 }
 
 std::uint64_t BoardMachine::line_seeds() const noexcept {
@@ -86,7 +67,9 @@ void BoardMachine::pass_time(std::uint64_t clock) {
 
 /// Whatever the watchdog makes of it: where it is off the lines run out.
 void BoardMachine::lose_host() {
-  const auto goes_on = [this] { return !faulty() && !power_lost_ && control(kRun) && (started_ || gone_); };
+  const auto goes_on = [this] {
+    return !faulty() && !power_lost_ && control(protocol::kControlRun) && (started_ || gone_);
+  };
   if (stands_still()) {
     run_until(kForEver);
     if (goes_on() && started_) {
@@ -94,7 +77,7 @@ void BoardMachine::lose_host() {
     }
     return;
   }
-  if (goes_on() && !started_ && control(kTimed)) {
+  if (goes_on() && !started_ && control(protocol::kControlTimed)) {
     run_until(std::max(clock_, go_clock_ + registers_.settings().first_tick));
   }
   while (goes_on() && started_) {
@@ -103,7 +86,7 @@ void BoardMachine::lose_host() {
 }
 
 bool BoardMachine::can_run() const noexcept {
-  if (power_lost_ || !control(kRun)) {
+  if (power_lost_ || !control(protocol::kControlRun)) {
     return false;
   }
   if (faulty()) {
@@ -113,7 +96,7 @@ bool BoardMachine::can_run() const noexcept {
 }
 
 void BoardMachine::run_until(std::uint64_t clock) {
-  const bool watched = !stands_still() && control(kWatch) && !faulty();
+  const bool watched = !stands_still() && control(protocol::kControlWatchdog) && !faulty();
   const std::uint64_t silent = watched ? last_host_ + registers_.settings().silence_limit : kForEver;
   while (next_event(std::min(clock, silent))) {
   }
@@ -145,7 +128,7 @@ bool BoardMachine::next_event(std::uint64_t clock) {
     run_dark(clock);
     return false;
   }
-  if (!control(kRun)) {
+  if (!control(protocol::kControlRun)) {
     return false;
   }
   if (!started_) {
@@ -173,7 +156,7 @@ bool BoardMachine::next_event(std::uint64_t clock) {
 
 /// A fault stands: lines begin and run out, but none fires.
 void BoardMachine::run_dark(std::uint64_t clock) {
-  if (control(kRun) && !started_ && start_by(clock)) {
+  if (control(protocol::kControlRun) && !started_ && start_by(clock)) {
     dark_until_ = clock_ + stream_.lines() * line_seeds();
   }
   if (started_ && dark_until_ <= clock) {
@@ -184,7 +167,7 @@ void BoardMachine::run_dark(std::uint64_t clock) {
 /// Whether first_tick has come by then.
 bool BoardMachine::start_by(std::uint64_t clock) {
   const std::uint64_t begin = go_clock_ + registers_.settings().first_tick;
-  if (!gone_ || !control(kTimed) || begin < clock_ || begin > clock) {
+  if (!gone_ || !control(protocol::kControlTimed) || begin < clock_ || begin > clock) {
     return false;
   }
   started_ = true;
@@ -294,13 +277,13 @@ std::uint32_t BoardMachine::slots_begun() const noexcept {
 
 /// Seed clocks by which the slots of a line come later than those of a forward one.
 std::uint32_t BoardMachine::delay_of(LineStream::Place place) const noexcept {
-  const bool backward = control(kBackward) && (ordinal_of(place) & 1) != 0;
+  const bool backward = control(protocol::kControlBackward) && (ordinal_of(place) & 1) != 0;
   return backward ? registers_.settings().reverse_delay : 0U;
 }
 
 /// A fault that the stream brings: now, or where the clock stands still at any moment of the lines that are to run.
 void BoardMachine::strike(DeviceFault fault) {
-  const bool running = control(kRun) && (started_ || (stands_still() && start_by(kForEver)));
+  const bool running = control(protocol::kControlRun) && (started_ || (stands_still() && start_by(kForEver)));
   if (!stands_still() || !running || stream_.lines() == 0) {
     close_gate(fault, slots_begun());
     return;
@@ -351,117 +334,6 @@ void BoardMachine::cut_short(std::uint32_t slots) {
     show_line(slots);
   }
   drop_line();
-}
-
-// Registers
-
-std::uint16_t BoardMachine::write_register(std::uint8_t address, std::uint32_t value, std::uint64_t clock) {
-  catch_up(clock);
-  last_host_ = clock_;
-  const bool ran = control(kRun);
-  const std::uint32_t slots = slots_begun();
-  const std::uint16_t command = registers_.write(address, value);
-  obey(command);
-  if (ran && !control(kRun)) {
-    cut_short(slots);
-    gone_ = started_ = positioned_ = false;
-  }
-  return command;
-}
-
-void BoardMachine::load_axis(std::size_t axis) {
-  const fpga::Settings::Outputs& s = registers_.settings();
-  axes_[axis].load(axis == 0 ? fpga::AbRegisters{.prescaler = s.prescaler,
-                                                 .increment = s.increment,
-                                                 .fraction_num = s.fraction_num,
-                                                 .fraction_den = s.fraction_den}
-                             : fpga::AbRegisters{.prescaler = s.prescaler_1,
-                                                 .increment = s.increment_1,
-                                                 .fraction_num = s.fraction_num_1,
-                                                 .fraction_den = s.fraction_den_1});
-}
-
-void BoardMachine::obey(std::uint16_t command) {
-  const fpga::Settings::Outputs& s = registers_.settings();
-  if ((command & kAcknowledge) != 0) {
-    acknowledge();
-  }
-  if ((command & kPosition) != 0) {
-    place_ = {s.position_revolution, s.position_line};
-    stream_.set_place(place_);
-    executed_ = closed_slot_ = 0;
-    partial_ = false;
-    positioned_ = true;
-  }
-  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
-    if ((command & kEmpty) != 0) {
-      axes_[axis].empty();
-    }
-    if ((command & kLoad[axis]) != 0) {
-      load_axis(axis);
-    }
-    if ((command & kIncrement[axis]) != 0) {
-      axes_[axis].load_increment(axis == 0 ? s.increment : s.increment_1);
-    }
-    if ((command & kAppend[axis]) != 0) {
-      axes_[axis].append({s.schedule_increment, s.schedule_seeds});
-    }
-    if ((command & kGo) != 0) {
-      axes_[axis].go();
-    }
-  }
-  if ((command & kGo) != 0) {
-    go_clock_ = clock_;
-    gone_ = true;
-    started_ = false;
-  }
-}
-
-/// Also empties the buffers.
-void BoardMachine::acknowledge() noexcept {
-  fault_ = DeviceFault::none;
-  faults_ = 0;
-  closed_slot_ = 0;
-  overflow_ = line_runs_ = partial_ = positioned_ = frame_lost_ = false;
-  due_.reset();
-  stream_.flush();
-}
-
-std::uint32_t BoardMachine::fifo_level() const noexcept {
-  return static_cast<std::uint32_t>(stream_.lines() * fpga::packed_bytes(registers_.settings().window_slots));
-}
-
-/// As fpga::Synchro puts it together.
-std::uint16_t BoardMachine::status_word() const noexcept {
-  const bool bits[] = {faulty(),
-                       line_runs_,
-                       axes_[0].refused(),
-                       overflow_,
-                       axes_[1].refused(),
-                       axes_[0].busy(),
-                       axes_[1].busy(),
-                       axes_[0].overflow() || axes_[1].overflow(),
-                       registers_.refused(),
-                       false,  // no encoder, no index
-                       started_,
-                       fifo_level() <= registers_.settings().low_level};
-  auto value = static_cast<unsigned>(fault_);
-  unsigned at = 3;
-  for (const bool bit : bits) {
-    value |= bit ? 1U << at : 0U;
-    ++at;
-  }
-  return static_cast<std::uint16_t>(value);
-}
-
-std::uint32_t BoardMachine::read_register(std::uint8_t address, std::uint64_t clock) {
-  catch_up(clock);
-  const std::uint32_t slots = partial_ ? closed_slot_ | fpga::LineProgress::kPartialBit : slots_begun();
-  return registers_.read(address, {.status = status_word(),
-                                   .level = fifo_level(),
-                                   .faults = faults_,
-                                   .executed_lines = executed_,
-                                   .closed_slot = slots});
 }
 
 // The stream
@@ -553,55 +425,6 @@ bool BoardMachine::spoil_frame() {
       frame.back() ^= std::byte{1};
       return false;
   }
-}
-
-bool BoardMachine::rests() const noexcept {
-  return !control(kRun) && !axes_[0].has_segments() && !axes_[1].has_segments();
-}
-
-void BoardMachine::restore(const Counters& counters) noexcept {
-  executed_ = counters.executed;
-  place_ = counters.place;
-  const std::uint64_t lines = registers_.settings().lines_per_revolution;
-  const std::uint64_t line = place_.line + std::uint64_t{counters.taken} - counters.executed;
-  stream_.set_place(
-      {static_cast<std::uint32_t>(place_.revolution + line / lines), static_cast<std::uint32_t>(line % lines)},
-      counters.taken);
-}
-
-const BoardMachine::Setup& BoardMachine::setup_from_now() {
-  planned_.rebase(std::exchange(taken_bytes_, 0));
-  setup_.faults = planned_.left();
-  return setup_;
-}
-
-void BoardMachine::set_up(const Setup& setup) {
-  setup_.random = setup.random;
-  setup_.stands_still = setup.stands_still;
-  planned_ = WireFaults(setup.faults);
-  taken_bytes_ = 0;
-}
-
-BoardStatus BoardMachine::status() const {
-  BoardStatus status;
-  status.protocol_version = protocol::kProtocolVersion;
-  status.state = faulty()                    ? BoardState::stopped
-                 : started_ && control(kRun) ? BoardState::running
-                 : positioned_               ? BoardState::filling
-                                             : BoardState::idle;
-  status.fault = fault_;
-  status.faults = faults_;
-  status.gate_dark = faulty();
-  status.partial_line = partial_;
-  status.tick = (clock_ - go_clock_) * kTicksPerSeed;
-  status.revolution = place_.revolution;
-  status.line = place_.line;
-  status.taken_lines = stream_.taken();
-  status.executed_lines = executed_;
-  status.closed_slot = closed_slot_;
-  status.level_bytes = static_cast<std::uint32_t>(stream_.level());
-  status.capacity_bytes = static_cast<std::uint32_t>(stream_.capacity());
-  return status;
 }
 
 }  // namespace gravure::emulator

@@ -11,6 +11,7 @@
 #include "gravure/core/device_link.hpp"
 #include "gravure/core/line_device.hpp"
 #include "gravure/emulator/wire_faults.hpp"
+#include "gravure/fpga/ab_generator.hpp"
 #include "line_stream.hpp"
 
 namespace gravure::emulator {
@@ -64,6 +65,8 @@ class BoardMachine {
   void set_up(const Setup& setup);
 
  private:
+  static constexpr std::uint64_t kTicksPerSeed = fpga::AbGenerator::kClockMultiplier;
+
   bool control(std::uint32_t bit) const noexcept { return (registers_.settings().control & bit) != 0; }
   bool faulty() const noexcept { return fault_ != DeviceFault::none; }
   LineStream::Shape shape() const noexcept;

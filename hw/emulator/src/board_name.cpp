@@ -99,10 +99,10 @@ Result<BoardName> parse_board_name(std::string_view text) {
 }
 
 std::string board_options_text(const BoardOptions& options) {
-  std::string text = std::string("pace=") + (options.now_ns ? "real" : "wait") +
-                     ",capacity=" + std::to_string(options.capacity_bytes) +
-                     ",fifo_bits=" + std::to_string(options.fifo_bits) + ",seed=" + std::to_string(options.seed) +
-                     ",seed_hz=" + std::to_string(options.seed_hz);
+  std::string text = std::string("pace=") + (options.now_ns ? "real" : "wait");
+  text += options.capacity_bytes == 0 ? "" : ",capacity=" + std::to_string(options.capacity_bytes);
+  text += options.fifo_bits == 0 ? "" : ",fifo_bits=" + std::to_string(options.fifo_bits);
+  text += ",seed=" + std::to_string(options.seed) + ",seed_hz=" + std::to_string(options.seed_hz);
   text += options.serial.empty() ? "" : ",serial=" + options.serial;
   for (const WireFault& fault : options.faults) {
     text += ",fault=" + to_string(fault);

@@ -18,7 +18,7 @@ Result<BoardName> parse_board_name(std::string_view text);
 
 /// The options alone, "key=value,...", into `options`.
 Result<void> parse_board_options(std::string_view text, BoardOptions& options);
-/// All of them, as parse_board_options() takes them.
+/// All that have a value, as parse_board_options() takes them.
 std::string board_options_text(const BoardOptions& options);
 
 }  // namespace gravure::emulator

@@ -33,7 +33,7 @@ struct BoardOptions {
   /// that runs would starve.
   std::function<std::uint64_t()> now_ns = {};
   /// Sees every line that fired, the cut one too: `fired` is what the gate let through, `start_tick` counts FPGA ticks
-  /// since go, the axes count since power-up. Must outlive the board.
+  /// since go, the axes count since power-up, whichever way their pins run. Must outlive the board.
   PinObserver* observer = nullptr;
 };
 

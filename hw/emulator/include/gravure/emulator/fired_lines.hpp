@@ -22,4 +22,10 @@ struct FiredLine {
 /// folder or a file is damaged, with its place; io; what `take` returns.
 Result<void> read_fired_lines(const std::string& folder, const std::function<Result<void>(const FiredLine&)>& take);
 
+/// Notes which program the board in a folder runs, for whoever looks at what it fired; replaces what was noted before.
+/// io.
+Result<void> note_program(const std::string& folder, const std::string& path);
+/// bad_file where none was noted.
+Result<std::string> noted_program(const std::string& folder);
+
 }  // namespace gravure::emulator
