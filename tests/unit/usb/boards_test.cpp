@@ -40,9 +40,9 @@ TEST_F(Boards, AnEmptyBusHasNone) {
 }
 
 TEST_F(Boards, EachIsListedWithItsState) {
-  FakeBoard idle;
-  FakeBoard other;
-  FakeBoard stopped;
+  FakeBoard& idle = boards_.emplace_back();
+  FakeBoard& other = boards_.emplace_back();
+  FakeBoard& stopped = boards_.emplace_back();
   stopped.say([](BoardStatus& status) {
     status.state = BoardState::stopped;
     status.fault = DeviceFault::underrun;
@@ -68,7 +68,7 @@ TEST_F(Boards, EachIsListedWithItsState) {
 }
 
 TEST_F(Boards, OneThatIsUsedStillSaysItsState) {
-  FakeBoard board;
+  FakeBoard& board = boards_.emplace_back();
   bus_->plug(board, {.serial = "U"});
   const auto link = open();
   ASSERT_TRUE(link);
@@ -85,9 +85,9 @@ TEST_F(Boards, OneThatIsUsedStillSaysItsState) {
 }
 
 TEST_F(Boards, OtherVersionsAreNamedBesideOurs) {
-  FakeBoard protocol;
-  FakeBoard registers;
-  FakeBoard stranger;
+  FakeBoard& protocol = boards_.emplace_back();
+  FakeBoard& registers = boards_.emplace_back();
+  FakeBoard& stranger = boards_.emplace_back();
   protocol.say([](BoardStatus& status) { status.protocol_version = 2; });
   registers.set(fpga::kVersionRegister.address, 1);
   stranger.set(fpga::kMagicRegister.address, 5);
@@ -103,7 +103,7 @@ TEST_F(Boards, OtherVersionsAreNamedBesideOurs) {
 }
 
 TEST_F(Boards, OneThatMayNotBeOpenedNamesTheRuleToInstall) {
-  FakeBoard board;
+  FakeBoard& board = boards_.emplace_back();
   const auto& device = bus_->plug(board);
   std::filesystem::permissions(bus_->root(), std::filesystem::perms::all);
   // The library below asks its own way before it looks at the node.
@@ -124,8 +124,8 @@ TEST_F(Boards, OneThatMayNotBeOpenedNamesTheRuleToInstall) {
 }
 
 TEST_F(Boards, WaitsUntilTheRightOneArrives) {
-  FakeBoard board;
-  FakeBoard other;
+  FakeBoard& board = boards_.emplace_back();
+  FakeBoard& other = boards_.emplace_back();
   EXPECT_FALSE(wait_for_board("", 0ms).value());
   bus_->plug(other, {.serial = "other"});
   EXPECT_TRUE(wait_for_board("", kLong).value());  // is there already

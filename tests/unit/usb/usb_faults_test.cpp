@@ -51,7 +51,7 @@ class UsbFaults : public UsbTest {
     EXPECT_TRUE(link_->next_status(kLong).value());
   }
 
-  FakeBoard board_;
+  FakeBoard& board_ = boards_.emplace_back();
   MockBus::Device* device_ = nullptr;
   std::unique_ptr<DeviceLink> link_;
 };
@@ -184,7 +184,7 @@ TEST_F(UsbFaults, UnpluggedAtAnyPointIsNamedAndTheBoardHasAPrefix) {
   link_.reset();
   const std::size_t length = 4096;
   for (std::size_t point = 0; point < 20; ++point) {
-    FakeBoard board;
+    FakeBoard& board = boards_.emplace_back();
     const std::string serial = "U" + std::to_string(point);
     auto& device = bus_->plug(board, {.serial = serial});
     auto link = open({.serial = serial, .transfers = 4, .transfer_bytes = 512});

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -83,6 +84,7 @@ class UsbTest : public testing::Test {
     }
   }
 
+  std::list<FakeBoard> boards_;  ///< outlive the bus
   std::unique_ptr<MockBus> bus_;
 };
 

@@ -8,7 +8,7 @@ namespace {
 using UsbLink = UsbTest;
 
 TEST_F(UsbLink, OpensTheOnlyBoardAndSaysWhichItIs) {
-  FakeBoard board;
+  FakeBoard& board = boards_.emplace_back();
   bus_->plug(board, {.serial = "A-17", .product = "engraver"});
   const auto link = open();
   ASSERT_TRUE(link);
@@ -20,7 +20,7 @@ TEST_F(UsbLink, OpensTheOnlyBoardAndSaysWhichItIs) {
 }
 
 TEST_F(UsbLink, AFullSpeedBusCarriesLess) {
-  FakeBoard board;
+  FakeBoard& board = boards_.emplace_back();
   bus_->plug(board, {.megabits_per_s = 12});
   const auto link = open();
   ASSERT_TRUE(link);
@@ -28,8 +28,8 @@ TEST_F(UsbLink, AFullSpeedBusCarriesLess) {
 }
 
 TEST_F(UsbLink, PicksTheBoardWithTheSerialNumber) {
-  FakeBoard first;
-  FakeBoard second;
+  FakeBoard& first = boards_.emplace_back();
+  FakeBoard& second = boards_.emplace_back();
   bus_->plug(first, {.serial = "one"});
   bus_->plug(second, {.serial = "two"});
   const auto link = open({.serial = "two"});
@@ -47,7 +47,7 @@ TEST_F(UsbLink, PicksTheBoardWithTheSerialNumber) {
 }
 
 TEST_F(UsbLink, SaysThatThereIsNoBoard) {
-  FakeBoard other;
+  FakeBoard& other = boards_.emplace_back();
   bus_->plug(other, {.vendor_id = 0x04A9});
   const auto link = open_usb_link({});
   ASSERT_FALSE(link);
@@ -66,7 +66,7 @@ TEST_F(UsbLink, RefusesOptionsOutOfRange) {
 }
 
 TEST_F(UsbLink, RefusesAnotherVersionOfTheProtocolAndNamesBoth) {
-  FakeBoard board;
+  FakeBoard& board = boards_.emplace_back();
   board.say([](BoardStatus& status) { status.protocol_version = 9; });
   bus_->plug(board);
   const auto link = open_usb_link({});
@@ -76,7 +76,7 @@ TEST_F(UsbLink, RefusesAnotherVersionOfTheProtocolAndNamesBoth) {
 }
 
 TEST_F(UsbLink, OnlyOneHostHasTheBoard) {
-  FakeBoard board;
+  FakeBoard& board = boards_.emplace_back();
   bus_->plug(board);
   auto first = open();
   const auto second = open_usb_link({});
@@ -87,7 +87,7 @@ TEST_F(UsbLink, OnlyOneHostHasTheBoard) {
 }
 
 TEST_F(UsbLink, ReadsAndWritesRegisters) {
-  FakeBoard board;
+  FakeBoard& board = boards_.emplace_back();
   bus_->plug(board);
   const auto link = open();
   ASSERT_TRUE(link);
@@ -104,7 +104,7 @@ TEST_F(UsbLink, ReadsAndWritesRegisters) {
 
 TEST_F(UsbLink, TheStreamArrivesInOrderWhateverTheCut) {
   SCOPED_TRACE(test::Dice::note());
-  FakeBoard board;
+  FakeBoard& board = boards_.emplace_back();
   bus_->plug(board);
   const auto link = open({.transfers = 3, .transfer_bytes = 1000});
   ASSERT_TRUE(link);
@@ -122,7 +122,7 @@ TEST_F(UsbLink, TheStreamArrivesInOrderWhateverTheCut) {
 }
 
 TEST_F(UsbLink, AFullBoardTakesNoMoreAndGoesOnLater) {
-  FakeBoard board(10'000);
+  FakeBoard& board = boards_.emplace_back(10'000);
   bus_->plug(board);
   const auto link = open({.transfers = 2, .transfer_bytes = 4096});
   ASSERT_TRUE(link);
@@ -149,7 +149,7 @@ TEST_F(UsbLink, AFullBoardTakesNoMoreAndGoesOnLater) {
 }
 
 TEST_F(UsbLink, WhatIsAbandonedDoesNotArrive) {
-  FakeBoard board(1000);
+  FakeBoard& board = boards_.emplace_back(1000);
   bus_->plug(board);
   const auto link = open({.transfers = 4, .transfer_bytes = 600});
   ASSERT_TRUE(link);
@@ -167,7 +167,7 @@ TEST_F(UsbLink, WhatIsAbandonedDoesNotArrive) {
 }
 
 TEST_F(UsbLink, GivesTheNewestStatusOnce) {
-  FakeBoard board;
+  FakeBoard& board = boards_.emplace_back();
   bus_->plug(board);
   const auto link = open();
   ASSERT_TRUE(link);
@@ -184,7 +184,7 @@ TEST_F(UsbLink, GivesTheNewestStatusOnce) {
 
 TEST_F(UsbLink, EndsWithTransfersOnTheirWay) {
   for (int trial = 0; trial < 5; ++trial) {
-    FakeBoard board(100);
+    FakeBoard& board = boards_.emplace_back(100);
     auto& device = bus_->plug(board, {.serial = std::to_string(trial)});
     const auto link = open({.serial = std::to_string(trial), .transfers = 8, .transfer_bytes = 50});
     ASSERT_TRUE(link);
