@@ -232,6 +232,10 @@ Result<void> PartRun::take_status(const BoardStatus& status) {
     power_lost_ = true;
     return device_error("the board has lost its power and its state");
   }
+  if (newest_ && static_cast<std::int32_t>(status.sequence - *newest_) <= 0) {
+    return {};  // overtaken by another
+  }
+  newest_ = status.sequence;
   const auto forward = [](std::int64_t known, std::uint32_t now) {
     return known + static_cast<std::int64_t>(std::uint32_t{now - static_cast<std::uint32_t>(known)});
   };
@@ -301,7 +305,7 @@ Result<void> PartRun::write(const std::vector<RegisterWrite>& writes) {
 
 /// Waits until the board says that nothing runs any more: then its counts are exact.
 Result<void> PartRun::settle() {
-  const Clock::time_point until = Clock::now() + kSettleTime;
+  const Clock::time_point until = Clock::now() + options_.stall / 5;
   while (Clock::now() < until) {
     GRAVURE_TRY(const std::optional<BoardStatus> status, link_.next_status(kTick));
     if (!status) {
