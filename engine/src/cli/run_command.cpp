@@ -8,7 +8,6 @@
 
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
-#include "gravure/session/job_parts.hpp"
 #include "gravure/session/run.hpp"
 #include "open_device.hpp"
 #include "program_files.hpp"

@@ -72,13 +72,13 @@ void append_segment(Writes& writes, std::uint32_t command, const ScheduleSegment
 /// rest; without that ramp the marking speed for ever.
 using Schedule = std::vector<ScheduleSegment>;
 Schedule schedule_of(std::uint64_t wait, const Schedule& up, std::uint64_t increment, std::uint64_t marking_seeds,
-                     const std::optional<Schedule>& down) {
+                     const Schedule* down) {
   Schedule schedule{{0, kStartLead}};  // comes during the load, where it is refused
   if (wait != 0) {
     schedule.push_back({0, wait});
   }
   schedule.insert(schedule.end(), up.begin(), up.end());
-  if (!down) {
+  if (down == nullptr) {
     schedule.push_back({increment, 1});
     return schedule;
   }
@@ -114,23 +114,28 @@ Schedules schedules_of(const DeviceSetup& setup, const LineTiming& timing, std::
   const std::uint64_t ramp_0 = seeds_of(setup.spin_up);
   const std::uint64_t ramp_1 = seeds_of(setup.carriage.spin_up);
   const std::uint64_t ramp = std::max(ramp_0, ramp_1);
-  if (ramp == 0 && !timing.axis_down && !timing.carriage_down) {
+  const bool stops = timing.stop_at_end || !setup.spin_down.empty() || !setup.carriage.spin_down.empty();
+  if (ramp == 0 && !stops) {
     return {};
   }
   const std::uint64_t wait = timing.lead_seeds - kStartLead + ramp;
-  const std::uint64_t marking = (timing.lines_before + timing.lines) * line_seeds;
-  const auto with = [&](const std::optional<Schedule>& down_0, const std::optional<Schedule>& down_1) {
+  const std::int64_t lines =
+      (setup.end_revolution - setup.first_revolution) * setup.lines_per_revolution - setup.first_line;
+  const std::uint64_t marking = (timing.lines_before + static_cast<std::uint64_t>(lines)) * line_seeds;
+  const auto with = [&](bool to_rest) {
     Schedules both;
-    both.axis = schedule_of(wait - ramp_0, setup.spin_up, setup.increment, marking, down_0);
+    both.axis =
+        schedule_of(wait - ramp_0, setup.spin_up, setup.increment, marking, to_rest ? &setup.spin_down : nullptr);
     if (setup.carriage.increment != 0) {
-      both.carriage = schedule_of(wait - ramp_1, setup.carriage.spin_up, setup.carriage.increment, marking, down_1);
+      both.carriage = schedule_of(wait - ramp_1, setup.carriage.spin_up, setup.carriage.increment, marking,
+                                  to_rest ? &setup.carriage.spin_down : nullptr);
     }
-    both.ends_at_rest = down_0.has_value();
+    both.ends_at_rest = to_rest;
     return both;
   };
-  Schedules both = with(timing.axis_down, timing.carriage_down);
+  Schedules both = with(stops);
   const bool fit = both.axis.size() <= kMostSegments && both.carriage.size() <= kMostSegments;
-  return fit ? both : with({}, {});
+  return fit ? both : with(false);
 }
 
 void put_lines(Writes& writes, const DeviceSetup& setup, const LineTiming& timing, std::uint64_t delay_seeds) {
@@ -233,8 +238,7 @@ Result<StartSequence> start_sequence(const DeviceSetup& setup, const LineTiming&
   GRAVURE_CHECK(prepare.refused());
 
   const std::uint32_t watchdog = timing.silence_seeds != 0 ? kControlWatchdog : 0;
-  const std::uint32_t backward =
-      (delay.backward ? kControlBackward : 0) | (timing.axis_backward ? kControlAxis0Backward : 0);
+  const std::uint32_t backward = (delay.backward ? kControlBackward : 0) | (setup.backward ? kControlAxis0Backward : 0);
   Writes start;
   start.put(fpga::kControlRegister, kControlRun | kControlAxis0 | kControlAxis1 | kControlTimed | watchdog | backward);
   start.command(kCommandLoad0 | kCommandLoad1 | kCommandGo);

@@ -113,9 +113,14 @@ Result<Beginning> where_to_begin(const Journal& journal, const BoardMemory& boar
   return beginning;
 }
 
-ResumeOffset resume_offset(const Plan& plan, const JobPart& part, std::int64_t line) {
+std::string line_text(const Plan& plan, std::int64_t line) {
+  const std::int64_t lines = plan.rotary.lines_per_revolution;
+  return fmt::format("{} {}, line {}", plan.mode == Mode::flat ? "pass" : "revolution", line / lines, line % lines);
+}
+
+ResumeOffset resume_offset(const Plan& plan, const BoardRun& run, std::int64_t line) {
   const std::int64_t per_revolution = plan.rotary.lines_per_revolution;
-  const std::int64_t revolutions = line / per_revolution - part.first_line / per_revolution;
+  const std::int64_t revolutions = line / per_revolution - run.first_revolution;
   ResumeOffset offset;
   offset.lines_before = line % per_revolution;
   offset.axis_um = um_of(counts_lost(plan, plan.ab, plan.rotary.edges_per_revolution, revolutions, offset.lines_before),

@@ -7,7 +7,6 @@
 
 #include "gravure/fpga/register_map.hpp"
 #include "gravure/protocol/frame.hpp"
-#include "gravure/session/job_parts.hpp"
 
 namespace gravure::session {
 namespace {
@@ -68,6 +67,8 @@ Result<void> PartRun::load_board() {
   GRAVURE_CHECK(write(settings_.sequence.settings));
   GRAVURE_CHECK(check_refused(
       protocol::kStatusSettingRefused | protocol::kStatusLoad0Refused | protocol::kStatusLoad1Refused, "settings"));
+  // Seen in between, what the position brings is news even where the board was filling before.
+  GRAVURE_TRY([[maybe_unused]] const std::optional<BoardStatus> between, link_.next_status(kTick));
   GRAVURE_CHECK(write(settings_.sequence.prepare));
   GRAVURE_CHECK(check_refused(protocol::kStatusSettingRefused | protocol::kStatusScheduleOverflow, "schedules"));
   // Messages from before the position was set are still on their way.

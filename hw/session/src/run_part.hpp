@@ -95,8 +95,8 @@ class PartRun {
   std::int64_t level_bytes_ = 0;
   std::uint64_t tick_ = 0;
   std::optional<std::uint32_t> newest_;  ///< sequence of the last status
-  bool started_ = false;  ///< go was said, or may have been
-  bool ran_ = false;      ///< the board has said that lines run
+  bool started_ = false;                 ///< go was said, or may have been
+  bool ran_ = false;                     ///< the board has said that lines run
   bool out_of_reach_ = false;
   bool power_lost_ = false;
   std::optional<BoardStatus> stopped_;  ///< by a fault

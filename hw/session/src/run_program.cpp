@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "gravure/fpga/register_map.hpp"
-#include "gravure/session/job_parts.hpp"
 #include "gravure/session/run.hpp"
 #include "gravure/twin/exposure.hpp"
 #include "run_part.hpp"
@@ -43,14 +42,12 @@ Result<BoardStatus> settled_status(DeviceLink& link) {
                                        "and power, switch it off and on"};
 }
 
-std::vector<ScheduleSegment> segments_of(const std::optional<AxisSpin>& spin) {
-  std::vector<ScheduleSegment> segments;
-  if (spin) {
-    for (const SpinSegment& segment : spin->down.segments) {
-      segments.push_back({segment.increment, static_cast<std::uint64_t>(segment.seeds)});
-    }
-  }
-  return segments;
+/// What the operator has to see to before a run of the board.
+std::string to_do_before(const Plan& plan, const BoardRun& run, const BoardRun& before) {
+  return run.band == before.band
+             ? std::string()
+             : fmt::format("band {} of {}: move the stage along the axis to {:.6f} mm from the place of band 0",
+                           run.band, plan.bands->count, to_double(run.axial_mm));
 }
 
 class Run {
@@ -63,8 +60,7 @@ class Run {
         options_(options),
         observer_(observer),
         cancel_(cancel),
-        plan_(program.header().plan),
-        parts_(job_parts(plan_)) {}
+        plan_(program.header().plan) {}
 
   Result<RunReport> run() {
     GRAVURE_CHECK(look_at_board());
@@ -128,34 +124,34 @@ class Run {
     static_cast<void>(journal_.event(kind, text));
   }
 
+  BoardRun run_of(std::int64_t line) const { return run_with(plan_, line / plan_.rotary.lines_per_revolution); }
+  std::int64_t end_of(const BoardRun& run) const { return run.end_revolution() * plan_.rotary.lines_per_revolution; }
+
   Result<void> run_parts() {
     Place place = report_.begun.place;
     while (place.line < total()) {
-      const JobPart& part = parts_[part_of(parts_, place.line)];
+      const BoardRun part = run_of(place.line);
       GRAVURE_CHECK(run_part(part, place));
       if (report_.error) {
         report_.end = report_.error->code == ErrorCode::cancelled ? RunEnd::stopped : RunEnd::failed;
         return {};
       }
-      place = {part.end_line, 0};
-      if (place.line < total()) {
-        report_.to_do = parts_[part_of(parts_, place.line)].begins_with;
-        if (!report_.to_do.empty()) {
-          note("part", "next: " + report_.to_do);
-        }
-        if (!report_.to_do.empty() && !options_.through) {
+      place = {end_of(part), 0};
+      report_.to_do = place.line < total() ? to_do_before(plan_, run_of(place.line), part) : std::string();
+      if (!report_.to_do.empty()) {
+        note("part", "next: " + report_.to_do);
+        if (!options_.through) {
           report_.end = RunEnd::part_end;
           return {};
         }
       }
     }
-    report_.to_do.clear();
     return journal_.finish();
   }
 
-  Result<void> run_part(const JobPart& part, const Place& place) {
+  Result<void> run_part(const BoardRun& part, const Place& place) {
     GRAVURE_TRY(PartSettings settings, settings_for(part, place));
-    if (place.line != part.first_line) {
+    if (place.line != part.first_revolution * plan_.rotary.lines_per_revolution) {
       say_offset(place.line);
     }
     GRAVURE_CHECK(journal_.begin({.number = 0,
@@ -164,7 +160,7 @@ class Run {
                                   .power_up = status_.power_up,
                                   .mark = settings.timing.mark,
                                   .first = place,
-                                  .end_line = part.end_line,
+                                  .end_line = end_of(part),
                                   .state = AttemptState::prepared,
                                   .executed = place,
                                   .sent_limit = place.line}));
@@ -180,11 +176,11 @@ class Run {
     return {};
   }
 
-  Result<PartSettings> settings_for(const JobPart& part, const Place& place) {
+  Result<PartSettings> settings_for(const BoardRun& part, const Place& place) {
     report_.offset = resume_offset(plan_, part, place.line);
     PartSettings settings;
     settings.first = place;
-    settings.end_line = part.end_line;
+    settings.end_line = end_of(part);
     settings.total_lines = total();
     settings.seed_hz = plan_.clock.seed_hz;
     settings.timing = {.slots_per_microvector = plan_.line.slots_per_microvector,
@@ -192,25 +188,16 @@ class Run {
                        .lines_before = static_cast<std::uint64_t>(report_.offset.lines_before),
                        .silence_seeds = static_cast<std::uint64_t>(plan_.clock.seed_hz / kSilenceParts),
                        .mark = std::random_device{}() | 1U};
-    const bool flat = plan_.mode == Mode::flat;
-    const std::vector<ScheduleSegment> axis = segments_of(plan_.spin);
-    const std::vector<ScheduleSegment> carriage =
-        plan_.carriage ? segments_of(plan_.carriage->spin) : std::vector<ScheduleSegment>();
-    settings.timing.axis_backward = part.axis_backward;
-    settings.timing.lines = static_cast<std::uint64_t>(part.end_line - place.line);
-    if (flat || plan_.spin) {
-      settings.timing.axis_down = axis;
-      settings.timing.carriage_down = carriage;
-    }
+    settings.timing.stop_at_end = plan_.mode == Mode::flat;
     const std::int64_t per_revolution = plan_.rotary.lines_per_revolution;
-    GRAVURE_TRY(settings.sequence,
-                protocol::start_sequence(device_setup(plan_, place.line / per_revolution, place.line % per_revolution),
-                                         settings.timing));
-    settings.stop = protocol::stop_sequence(axis, carriage);
-    settings.stop_time = stop_time(axis, carriage);
+    const DeviceSetup setup = device_setup(plan_, place.line / per_revolution, place.line % per_revolution);
+    GRAVURE_TRY(settings.sequence, protocol::start_sequence(setup, settings.timing));
+    settings.stop = protocol::stop_sequence(setup.spin_down, setup.carriage.spin_down);
+    settings.stop_time = stop_time(setup.spin_down, setup.carriage.spin_down);
     settings.frame_bytes = report_.demand.frame_bytes;
     settings.capacity_bytes = std::int64_t{status_.capacity_bytes};
-    settings.reserve_bytes = std::min(report_.reserve_bytes, (part.end_line - place.line) * report_.demand.frame_bytes);
+    settings.reserve_bytes =
+        std::min(report_.reserve_bytes, (settings.end_line - place.line) * report_.demand.frame_bytes);
     settings.power_up = status_.power_up;
     return settings;
   }
@@ -248,7 +235,6 @@ class Run {
   RunObserver& observer_;
   const CancelToken& cancel_;
   const Plan& plan_;
-  std::vector<JobPart> parts_;
   BoardStatus status_;
   RunReport report_;
 };

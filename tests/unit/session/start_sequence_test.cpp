@@ -148,7 +148,7 @@ StartSequence expect_runs(Board& board, DeviceSetup setup, LineTiming timing, st
   setup.first_revolution = first / setup.lines_per_revolution;
   setup.first_line = first % setup.lines_per_revolution;
   timing.lines_before = static_cast<std::uint64_t>(setup.first_line);
-  timing.lines = static_cast<std::uint64_t>(end - first);
+  setup.end_revolution = (end + setup.lines_per_revolution - 1) / setup.lines_per_revolution;
   const Result<StartSequence> sequence = start_sequence(setup, timing);
   EXPECT_TRUE(sequence) << sequence.error().message;
   constexpr std::uint32_t kRefused =
@@ -230,8 +230,7 @@ TEST(StartSequence, EndsAtRestWhereItIsToldTo) {
   setup.fraction_num = 0;
   setup.fraction_den = 1;
   Board board;
-  const StartSequence sequence =
-      expect_runs(board, setup, {.slots_per_microvector = 5, .axis_down = {{}}, .carriage_down = {{}}}, 4, 8);
+  const StartSequence sequence = expect_runs(board, setup, {.slots_per_microvector = 5, .stop_at_end = true}, 4, 8);
   EXPECT_TRUE(sequence.ends_at_rest);
   board.hold({}, 1'000);
   const std::uint64_t edges = board.edges(0);
@@ -265,7 +264,9 @@ TEST(StartSequence, TurnsTheAxisTheOtherWay) {
   const StartSequence onwards = expect_runs(board, setup, {.slots_per_microvector = 5}, 0, 4);
   const std::uint64_t edges = board.edges_at(onwards.first_tick * kSeedClock + 900);
   Board other;
-  const StartSequence backward = expect_runs(other, setup, {.slots_per_microvector = 5, .axis_backward = true}, 0, 4);
+  DeviceSetup returning = setup;
+  returning.backward = true;
+  const StartSequence backward = expect_runs(other, returning, {.slots_per_microvector = 5}, 0, 4);
   EXPECT_EQ(other.edges_at(backward.first_tick * kSeedClock + 900), edges);
   EXPECT_NE(backward.start, onwards.start);
 }
@@ -305,8 +306,8 @@ TEST(StartSequence, RefusesWhatTheBoardWould) {
 TEST(StartSequence, LeavesTheEndToTheHostWhereTheListIsTooShort) {
   DeviceSetup setup = small_setup();
   setup.lines_per_revolution = 1'000'000'000;
-  const Result<StartSequence> sequence = start_sequence(
-      setup, {.slots_per_microvector = 5, .axis_down = {{}}, .carriage_down = {{}}, .lines = 10'000'000'000});
+  setup.end_revolution = 10;
+  const Result<StartSequence> sequence = start_sequence(setup, {.slots_per_microvector = 5, .stop_at_end = true});
   ASSERT_TRUE(sequence) << sequence.error().message;
   EXPECT_FALSE(sequence.value().ends_at_rest);
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,11 +58,8 @@ struct LineTiming {
   std::uint64_t lines_before = 0;
   std::uint64_t lead_seeds = kStartLead;  ///< at least kStartLead
   std::uint64_t silence_seeds = 0;        ///< silence_limit; 0: the watchdog stays off
-  bool axis_backward = false;             ///< axis 0 turns the other way
-  /// How the schedules go on behind the last of `lines`: none, or a ramp down to rest, which may have no segments.
-  std::optional<std::vector<ScheduleSegment>> axis_down = {};
-  std::optional<std::vector<ScheduleSegment>> carriage_down = {};
-  std::uint64_t lines = 0;
+  /// The axes stop behind the last line even where the setup has no ramp down: a stage that is to turn round.
+  bool stop_at_end = false;
   /// Left in schedule_increment, which nothing reads after the last segment: a host that comes back knows by it that
   /// the lines the board has counted are its own.
   std::uint32_t mark = 0;

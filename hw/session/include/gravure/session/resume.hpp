@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "gravure/core/board_runs.hpp"
 #include "gravure/core/plan.hpp"
-#include "gravure/session/job_parts.hpp"
 #include "gravure/session/journal.hpp"
 
 namespace gravure::session {
@@ -56,6 +56,9 @@ struct ResumeOffset {
   Rational carriage_um = 0;        ///< likewise
   Rational carriage_start_mm = 0;  ///< helical mode: where the carriage's reference is to be
 };
-ResumeOffset resume_offset(const Plan& plan, const JobPart& part, std::int64_t line);
+ResumeOffset resume_offset(const Plan& plan, const BoardRun& run, std::int64_t line);
+
+/// "revolution 3, line 17" of a line of the job; in flat mode "pass".
+std::string line_text(const Plan& plan, std::int64_t line);
 
 }  // namespace gravure::session
