@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -168,6 +169,12 @@ Result<int> run(const Options& options, const Command& command) {
   const CancelToken& cancel = cancel_token();
   const std::string journal_path = options.journal.empty() ? options.program + ".journal" : options.journal;
   GRAVURE_CHECK(refuse_overwrite({{"--journal", journal_path}}, {options.program}));
+  if (std::error_code ignored; options.run.resume.resume && !std::filesystem::exists(journal_path, ignored)) {
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("--resume: there is no journal {}, so nothing was begun: leave out --resume, or give the "
+                             "journal of the run with --journal",
+                             journal_path)};
+  }
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   GRAVURE_TRY(const std::string hash, hash_of(options.program));
   const Plan& plan = program->header().plan;

@@ -79,11 +79,6 @@ Result<void> check_options(const Journal& journal, const ResumeOptions& options)
                              "on with --resume, or begin anew with --again",
                              journal.path(), last.executed.line - 1)};
   }
-  if (options.resume && !journal.last()) {
-    return Error{ErrorCode::bad_argument, fmt::format("journal {}: nothing was begun, so there is nothing to resume: "
-                                                      "leave out --resume",
-                                                      journal.path())};
-  }
   return {};
 }
 

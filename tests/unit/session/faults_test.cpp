@@ -75,7 +75,7 @@ class Faults : public testing::Test {
     RunOptions options;
     options.stall = std::chrono::milliseconds(250);
     BoardOptions board{.serial = "FAULTY",
-                       .capacity_bytes = static_cast<std::size_t>(frame * dice.between(2, 30)),
+                       .capacity_bytes = static_cast<std::size_t>(frame * dice.between(3, 30)),
                        .seed = dice.word(),
                        .observer = &exposure};
     WireFault fault{.kind = kind.kind};
