@@ -36,6 +36,18 @@ SpinStart spin_start(const AbPlan& ab, const std::optional<AxisSpin>& spin) {
           static_cast<std::uint64_t>(Integer(steps * Integer(ab.fraction_num) % Integer(ab.fraction_den)))};
 }
 
+Rational way_back_lead(const Plan& plan) {
+  if (plan.mode != Mode::flat || !plan.spin) {
+    return 0;
+  }
+  const std::int64_t ticks_per_seed = plan.clock.fpga_hz / plan.clock.seed_hz;
+  SpinPhase phase = phase_after(plan.ab, plan.spin->up.segments, ticks_per_seed, {});
+  const Integer up = phase.counts / counts_per_edge(plan.ab);
+  phase = phase_after(plan.ab, plan.ab.increment, plan.rotary.ticks_per_revolution, std::move(phase));
+  const Integer rest = (phase.counts + plan.spin->down.counts) / counts_per_edge(plan.ab);
+  return plan.rotary.edges_per_revolution + Rational(Integer(2 * up - rest));
+}
+
 Integer counts_of(const AxisState& state) {
   return Integer(state.counts_high) * (Integer(1) << 64U) + Integer(state.counts_low);
 }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "gravure/core/board_runs.hpp"
 #include "spin_ramp.hpp"
 
 namespace gravure::sync_plan {
 namespace {
 
 constexpr std::int64_t kMostSeeds = 4'294'967'295;  // from go to the first tick: the board's first_tick
+constexpr std::size_t kMostSegments = 256;          // of the board's list
 
 /// An axis of the plan with its section of the job.
 struct Axis {
@@ -26,18 +28,28 @@ std::vector<Axis> axes_of(const Job& job, Plan& plan) {
   const std::int64_t fpga_hz = plan.clock.fpga_hz;
   const std::int64_t per_seed = job.fpga.clock_multiplier;
   const Rational per_mm = Rational(1000) / plan.rotary.circumference_um;
+  const std::int64_t run_ticks = run_with(plan, 0).ticks;
   std::vector<Axis> axes;
   if (plan.mode == Mode::flat) {
     axes.push_back({"stage",
                     "mm",
-                    {plan.ab, fpga_hz, per_seed, plan.rotary.edges_per_revolution * per_mm, job.stage.limits, {}},
+                    {plan.ab,
+                     fpga_hz,
+                     per_seed,
+                     plan.rotary.edges_per_revolution * per_mm,
+                     job.stage.limits,
+                     {},
+                     run_ticks,
+                     plan.rotary.edges_per_revolution,
+                     Rest::turn_back},
                     plan.spin});
     return axes;
   }
   axes.push_back({"rotary",
                   "deg",
                   {plan.ab, fpga_hz, per_seed, plan.rotary.edges_per_revolution / Rational(360), job.rotary.limits,
-                   job.rotary.start_angle_deg},
+                   job.rotary.start_angle_deg, run_ticks, plan.rotary.edges_per_revolution,
+                   plan.bands ? Rest::whole_turns : Rest::next_period},
                   plan.spin});
   if (plan.carriage) {
     CarriagePlan& carriage = *plan.carriage;
@@ -48,7 +60,9 @@ std::vector<Axis> axes_of(const Job& job, Plan& plan) {
                      per_seed,
                      carriage.edges_per_revolution * Rational(1000) / carriage.feed_um,
                      job.carriage.limits,
-                     {}},
+                     {},
+                     run_ticks,
+                     carriage.edges_per_revolution},
                     carriage.spin});
   }
   return axes;
@@ -71,6 +85,13 @@ std::int64_t seeds_of(const SpinPlan& spin, const SpinRequest& request) {
 
 /// The board counts the seed clocks to the first line in a register.
 void check_length(const Axis& axis, const AxisSpin& spin, Violations& violations) {
+  if (spin.up.segments.size() > kMostSegments || spin.down.segments.size() > kMostSegments) {
+    violations.conflict(ErrorCode::out_of_range, axis.section + ".max_acceleration_" + std::string(axis.unit) + "_s2",
+                        number_text(*axis.request.limits.max_acceleration),
+                        "the ramps take " + std::to_string(spin.up.segments.size()) + " and " +
+                            std::to_string(spin.down.segments.size()) + " segments, and the board lists " +
+                            std::to_string(kMostSegments));
+  }
   if (seeds_of(spin.up, axis.request) <= kMostSeeds) {
     return;
   }
@@ -88,7 +109,7 @@ void check_length(const Axis& axis, const AxisSpin& spin, Violations& violations
 }
 
 /// Every axis begins with the same go and is at its marking speed at tick 0: who needs less waits at rest.
-Result<void> spin_together(const std::vector<Axis>& axes, std::int64_t marking_ticks) {
+Result<void> spin_together(const std::vector<Axis>& axes) {
   std::vector<Staircase> stairs;
   std::vector<std::int64_t> rest(axes.size(), 0);
   for (const Axis& axis : axes) {
@@ -114,7 +135,7 @@ Result<void> spin_together(const std::vector<Axis>& axes, std::int64_t marking_t
     return Error{ErrorCode::out_of_range, "no spin-up ends all axes at once"};
   }
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    axes[i].spin->down = make_spin_down(axes[i].request, stairs[i], axes[i].spin->up, marking_ticks);
+    axes[i].spin->down = make_spin_down(axes[i].request, stairs[i], axes[i].spin->up);
   }
   return {};
 }
@@ -132,12 +153,10 @@ Result<void> plan_spins(const Job& job, Plan& plan, Violations& violations) {
   if (spinning.empty() || !violations.none()) {
     return {};
   }
-  const std::int64_t motion_ticks = plan.mode == Mode::flat ? plan.rotary.ticks_per_revolution : plan.job.ticks;
-  GRAVURE_CHECK(spin_together(spinning, motion_ticks));
-  const std::int64_t motions = plan.mode == Mode::flat ? plan.job.revolutions : 1;
+  GRAVURE_CHECK(spin_together(spinning));
+  const std::int64_t runs = plan.job.revolutions / run_with(plan, 0).revolutions;
   for (const Axis& axis : spinning) {
-    axis.spin->total_s =
-        plan.job.duration_s + (axis.spin->up.duration_s + axis.spin->down.duration_s) * Rational(motions);
+    axis.spin->total_s = plan.job.duration_s + (axis.spin->up.duration_s + axis.spin->down.duration_s) * Rational(runs);
     check_length(axis, *axis.spin, violations);
   }
   return {};

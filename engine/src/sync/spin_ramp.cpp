@@ -61,13 +61,32 @@ void fill(const SpinRequest& request, const Staircase& stairs, SpinPhase before,
   spin.speed_error = Rational(stairs.speed_error);
 }
 
+/// Edges of a spin-up, and so of the ramp at the other end of a pass, so that from rest to rest the axis goes whole A-B
+/// periods, to an edge, and the spin-down has room for its staircase.
+Integer edges_to_turn_back(const SpinRequest& request, const Staircase& stairs, const Integer& least) {
+  const AbPlan& ab = request.ab;
+  const Rational edge(counts_per_edge(ab));
+  const Integer marking = phase_after(ab, ab.increment, request.marking_ticks, {}).counts;
+  const Integer down = phase_after(ab, stairs.segments, request.ticks_per_seed, {}).counts;
+  const Integer room = ceil_of(Rational(Rational(Integer(marking + down)) / edge - request.edges_per_revolution)) + 2;
+  const Integer edges = std::max(least, room);
+  const auto off_period = [&](const Integer& up) {
+    const Rational way = 2 * Rational(up) + request.edges_per_revolution;
+    return Rational(abs(Rational(way - 4 * Rational(round_of(Rational(way / 4))))));
+  };
+  return off_period(edges + 1) < off_period(edges) ? Integer(edges + 1) : edges;
+}
+
 /// The angle where line 0 lies, with as many whole turns as it takes to be `least` or more, in A-B edges: the nearest.
 struct StartEdges {
   Rational start_deg = 0;
   Integer edges = 0;
 };
 
-StartEdges start_edges(const SpinRequest& request, const Integer& least) {
+StartEdges start_edges(const SpinRequest& request, const Staircase& stairs, const Integer& least) {
+  if (request.rest == Rest::turn_back) {
+    return {0, edges_to_turn_back(request, stairs, least)};
+  }
   if (!request.start_deg) {
     return {0, least};
   }
@@ -81,6 +100,24 @@ StartEdges start_edges(const SpinRequest& request, const Integer& least) {
     start.edges = round_of(Rational(start.start_deg * request.edges_per_unit));
   }
   return start;
+}
+
+/// Where the counter stands at rest after a run, from rest before it: `least` or more.
+Integer rest_counts(const SpinRequest& request, const SpinPlan& up, const Integer& least) {
+  const Integer edge = counts_per_edge(request.ab);
+  const Rational& turn = request.edges_per_revolution;
+  switch (request.rest) {
+    case Rest::turn_back:
+      return 4 * edge * round_of(Rational((2 * Rational(Integer(up.counts / edge)) + turn) / 4));
+    case Rest::whole_turns: {
+      const Integer turns = denominator_of(Rational(turn / 4));  // so many are whole A-B periods
+      const Rational step = Rational(edge) * turn * Rational(turns);
+      return floor_of(Rational(step * Rational(ceil_of(Rational(Rational(least) / step)))));
+    }
+    case Rest::next_period:
+      break;
+  }
+  return (least + 4 * edge - 1) / (4 * edge) * (4 * edge);
 }
 
 /// Where the increment goes in a staircase that rises.
@@ -156,7 +193,7 @@ Result<AxisSpin> make_spin_up(const SpinRequest& request, const Staircase& stair
   const SpinPhase at_top = phase_after(ab, ramp, request.ticks_per_seed, {});
   // One unit at a time at most `unit.steps * (top + 1)` counts; the one that fills up takes less than one.
   const Integer least = (at_top.counts + edge - 1) / edge;
-  const StartEdges start = start_edges(request, least);
+  const StartEdges start = start_edges(request, stairs, least);
   const Integer target = start.edges * edge;
   const Rational per_unit =
       Rational(Integer(unit.steps)) * (Rational(top) + Rational(Integer(ab.fraction_num), Integer(ab.fraction_den)));
@@ -189,13 +226,41 @@ Result<AxisSpin> make_spin_up(const SpinRequest& request, const Staircase& stair
   return spin;
 }
 
-SpinPlan make_spin_down(const SpinRequest& request, const Staircase& stairs, const SpinPlan& up,
-                        std::int64_t marking_ticks) {
-  SpinPhase phase = phase_after(request.ab, up.segments, request.ticks_per_seed, {});
-  phase = phase_after(request.ab, request.ab.increment, marking_ticks, std::move(phase));
+SpinPlan make_spin_down(const SpinRequest& request, const Staircase& stairs, const SpinPlan& up) {
+  const AbPlan& ab = request.ab;
+  const Unit unit = unit_of(request);
+  const Integer top = ab.increment;
+  SpinPhase marked = phase_after(ab, up.segments, request.ticks_per_seed, {});
+  marked = phase_after(ab, ab.increment, request.marking_ticks, std::move(marked));
+  const std::vector<SpinSegment> falling(stairs.segments.rbegin(), stairs.segments.rend());
+  const Integer target = rest_counts(request, up, phase_after(ab, falling, request.ticks_per_seed, marked).counts);
+  const Rational per_unit =
+      Rational(Integer(unit.steps)) * (Rational(top) + Rational(Integer(ab.fraction_num), Integer(ab.fraction_den)));
+  const auto missing = [&](const Integer& units) {  // with the unit that fills up at increment 0
+    const std::int64_t ticks = static_cast<std::int64_t>(Integer((units + 1) * unit.seeds)) * request.ticks_per_seed;
+    SpinPhase cruised = phase_after(ab, 0, ticks, marked);
+    cruised.counts += units * unit.steps * top;
+    return Integer(target - phase_after(ab, falling, request.ticks_per_seed, std::move(cruised)).counts);
+  };
+  Integer cruise = floor_of(Rational(std::max(Integer(0), missing(0))) / per_unit);
+  while (cruise > 0 && missing(cruise) < 0) {
+    --cruise;
+  }
+  const auto step_down = [&] { return Integer((std::max(Integer(0), missing(cruise)) + unit.steps - 1) / unit.steps); };
+  Integer fill_in = step_down();
+  if (fill_in > top) {
+    ++cruise;
+    fill_in = step_down();
+  }
   SpinPlan down;
-  down.segments.assign(stairs.segments.rbegin(), stairs.segments.rend());
-  fill(request, stairs, std::move(phase), down);
+  append(down.segments, ab.increment, static_cast<std::int64_t>(cruise) * unit.seeds, unit.seeds);
+  std::vector<SpinSegment> stair = falling;
+  const SpinSegment step{static_cast<std::uint64_t>(fill_in), unit.seeds};
+  stair.insert(
+      std::find_if(stair.begin(), stair.end(), [&](const SpinSegment& one) { return one.increment <= step.increment; }),
+      step);
+  down.segments.insert(down.segments.end(), stair.begin(), stair.end());
+  fill(request, stairs, std::move(marked), down);
   return down;
 }
 

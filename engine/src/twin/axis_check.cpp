@@ -74,6 +74,7 @@ Result<AxisCheck> AxisCheck::make(const Plan& plan, const Demand& demand) {
   check.fraction_den_ = ab.fraction_den;
   check.largest_lag_edges_ = lag_of(ab);
   check.take_spin(ab, demand.spin);
+  check.way_back_lead_edges_ = demand.to_and_fro ? to_double(way_back_lead(plan)) : 0;
   check.step_um_ = to_double(Rational(demand.travel_um / demand.edges_per_revolution));
   // Counts a line by the registers, over the counts it needs: what the counter gains.
   const Rational counts_per_line = counts_per_step(ab) * plan.line.ticks / Rational(Integer(ab.prescaler));
@@ -131,7 +132,8 @@ double AxisCheck::error_edges(std::int64_t ordinal, const AxisState& axis) const
   const Wide whole = ideal / edges_den_;
   const Wide rest = ideal % edges_den_;
   const Wide apart = static_cast<Wide>(axis.edges) * sign_of(ordinal) - whole;
-  return static_cast<double>(apart) - static_cast<double>(rest) / static_cast<double>(edges_den_);
+  const double lead = sign_of(ordinal) < 0 ? way_back_lead_edges_ : 0;
+  return static_cast<double>(apart) - static_cast<double>(rest) / static_cast<double>(edges_den_) + lead;
 }
 
 Result<AxisChecks> AxisChecks::make(const Plan& plan) {

@@ -69,6 +69,7 @@ class AxisCheck {
   std::uint64_t increment_ = 0;
   std::uint64_t fraction_num_ = 0;
   std::uint64_t fraction_den_ = 1;
+  double way_back_lead_edges_ = 0;
   Rational largest_lag_edges_ = 1;
   Rational largest_lead_edges_ = 0;
   std::uint64_t start_counts_ = 0;  ///< of an edge, at the first line of a run

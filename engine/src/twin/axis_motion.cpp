@@ -117,6 +117,7 @@ Result<AxisMotion> AxisMotion::make(const Plan& plan, const Demand& demand, cons
                         to_double(Rational(1 / (edges_per_tick * Rational(plan.clock.fpga_hz)))));
     axis.steady_um_ = -axis.servo_lag_um();
   }
+  axis.way_back_lead_um_ = &ab == &plan.ab ? to_double(way_back_lead(plan)) * axis.step_um_ : 0;
   axis.set_range();
   return axis;
 }
@@ -134,7 +135,9 @@ void AxisMotion::take_start(const AbPlan& ab, const std::optional<AxisSpin>& spi
 }
 
 AxisMotion::Start AxisMotion::start_of(std::int64_t revolution) const noexcept {
-  return {(revolution - revolution % revolutions_per_start_) * ticks_per_revolution_};
+  const bool back = (revolution & 1) != 0;  // only a panel has a way back
+  return {(revolution - revolution % revolutions_per_start_) * ticks_per_revolution_,
+          lead_um_ + (back ? way_back_lead_um_ : 0)};
 }
 
 AxisMotion::Phase AxisMotion::phase_at(const Start& start, std::int64_t tick) const noexcept {
@@ -197,6 +200,8 @@ void AxisMotion::set_range() noexcept {
     range_ = {lead_um_ - (late_edges_ + behind.most + rounding) * step_um_,
               lead_um_ - (late_edges_ + behind.least - rounding) * step_um_};
   }
+  range_.least_um += std::min(0.0, way_back_lead_um_);
+  range_.most_um += std::max(0.0, way_back_lead_um_);
 }
 
 }  // namespace gravure

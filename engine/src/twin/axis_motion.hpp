@@ -18,7 +18,8 @@ struct AxisTerms {
 };
 
 /// How far an axis is from where its pulses want it, at any tick: the A-B edges of the registers (or the steady signal
-/// they stand for), through the servo, against ideal motion. All in um of travel; positive: the axis leads.
+/// they stand for), through the servo, against ideal motion. All in um of travel the way the axis goes; positive: it
+/// leads. On the way back of a panel that is towards line 0 of the image.
 class AxisMotion {
  public:
   /// The axis across the lines. Fails with out_of_range where the registers are none.
@@ -41,6 +42,7 @@ class AxisMotion {
   /// Where motion starts, from rest or with the counter at 0: with the first line of the job, of a band, of a pass.
   struct Start {
     std::int64_t tick = 0;
+    double lead_um = 0;  ///< of the steady signal against the edges, and of a way back against the pass
   };
   Start start_of(std::int64_t revolution) const noexcept;
   Phase phase_at(const Start& start, std::int64_t tick) const noexcept;
@@ -50,8 +52,8 @@ class AxisMotion {
   }
   double drift_um_per_slot() const noexcept { return drift_um_per_tick_ * ticks_per_slot_; }
   /// Everything but the drift.
-  double off_um(const Phase& phase) const noexcept {
-    return !terms_.ab_step ? steady_um_ : lead_um_ - step_um_ * behind_edges(phase);
+  double off_um(const Start& start, const Phase& phase) const noexcept {
+    return !terms_.ab_step ? steady_um_ : start.lead_um - step_um_ * behind_edges(phase);
   }
   /// Between what off_um() is over the whole job; with a servo also what the rounding of edges to ticks may do to it,
   /// which off_um() leaves out.
@@ -80,8 +82,9 @@ class AxisMotion {
   std::uint64_t increment_ = 0;
   std::uint64_t fraction_num_ = 0;
   std::uint64_t fraction_den_ = 1;
-  Phase start_;                    ///< what a spin-up leaves of an edge, of a count, of a step; else all 0
-  double lead_um_ = 0;             ///< the steady signal is so far ahead of the edges then
+  Phase start_;         ///< what a spin-up leaves of an edge, of a count, of a step; else all 0
+  double lead_um_ = 0;  ///< the steady signal is so far ahead of the edges then
+  double way_back_lead_um_ = 0;
   double late_edges_ = 0;          ///< edges come later than evenly spaced ones by so much, in the mean
   std::uint64_t slot_counts_ = 0;  ///< what the whole steps of a slot add
   std::uint64_t slot_fraction_ = 0;

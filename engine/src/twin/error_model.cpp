@@ -230,8 +230,8 @@ inline PulseError ErrorModel::landed(const Line& line, std::int64_t index, const
     hit = line.surface->hit(hit.across_um, slope_across);
   }
   PulseError error;
-  error.across_um =
-      hit.across_um + axis_->off_um(axis) + line.axis_drift_um + axis_->drift_um_per_slot() * slots - line.onwards_um;
+  error.across_um = hit.across_um + axis_->off_um(line.axis_start, axis) + line.axis_drift_um +
+                    axis_->drift_um_per_slot() * slots - line.onwards_um;
   error.along_um =
       of(errors.along_um) - growth_ * (line.first_column_um + pixel * column_um_) + hit.rise_um * slope_along;
   if (!line.rounded_off_um.empty()) {
@@ -241,7 +241,8 @@ inline PulseError ErrorModel::landed(const Line& line, std::int64_t index, const
     error.along_um += line.rounded_off_um[before] * (1 - share) + line.rounded_off_um[before + 1] * share;
   }
   if (carriage_) {
-    error.along_um += carriage_->off_um(carriage) + line.carriage_drift_um + carriage_->drift_um_per_slot() * slots;
+    error.along_um += carriage_->off_um(line.carriage_start, carriage) + line.carriage_drift_um +
+                      carriage_->drift_um_per_slot() * slots;
   }
   // Along the beam it is as much further to a surface that rises as the beam leans.
   error.defocus_um =

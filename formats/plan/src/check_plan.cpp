@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "gravure/core/board_runs.hpp"
 #include "gravure/core/exposure_map.hpp"
 #include "gravure/core/spin_phase.hpp"
 
@@ -303,15 +304,19 @@ void check_spin(const Plan& plan, const SpinChannel& channel, Complaint& complai
   complaint.unless(spin.up.ticks / ticks_per_seed <= kMostSeeds, channel.section + "up.ticks",
                    "are more than the board counts to the first line");
   SpinPhase phase = phase_after(channel.ab, spin.up.segments, ticks_per_seed, {});
-  phase =
-      phase_after(channel.ab, channel.ab.increment, flat ? plan.rotary.ticks_per_revolution : plan.job.ticks, phase);
+  phase = phase_after(channel.ab, channel.ab.increment, run_with(plan, 0).ticks, phase);
   check_ramp(plan, channel, spin.down, channel.section + "down.", phase, complaint);
+  const Integer edge = Integer(1) << static_cast<unsigned>(channel.ab.counter_bits - 2);
   const bool turns = !flat && &channel.ab == &plan.ab;
   complaint.equal(channel.section + "start_error_deg", spin.start_error_deg,
                   turns ? Rational(spin.up.travel - spin.start_deg) : Rational(0));
-  const std::int64_t motions = flat ? plan.job.revolutions : 1;
+  complaint.unless((phase.counts + spin.down.counts) / edge % 4 == 0, channel.section + "down.counts",
+                   "do not bring the axis to rest on an A-B period");
+  complaint.unless(!flat || abs(way_back_lead(plan)) <= 1, channel.section + "down.counts",
+                   "do not bring the stage to where its way back begins");
+  const std::int64_t runs = plan.job.revolutions / run_with(plan, 0).revolutions;
   complaint.equal(channel.section + "total_s", spin.total_s,
-                  plan.job.duration_s + (spin.up.duration_s + spin.down.duration_s) * Rational(motions));
+                  plan.job.duration_s + (spin.up.duration_s + spin.down.duration_s) * Rational(runs));
 }
 
 /// A degree of the workpiece, a mm of the stage.

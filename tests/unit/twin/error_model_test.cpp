@@ -291,5 +291,86 @@ TEST(ErrorModel, ThermalGrowthOfAPanelStartsAtItsFirstLineWhicheverWayItRuns) {
   EXPECT_NEAR(model.pulse_error(1, 49, 0).across_um, 0, 1e-9);
 }
 
+/// Where the stage of a panel is, in edges from where line 0 of the image begins: run by run from the places of rest,
+/// by the signed edges of the board.
+struct PanelStage {
+  const Plan& plan;
+  AxisCheck check = AxisCheck::make(plan).value();
+
+  Rational edges_at(std::int64_t pass, std::int64_t tick) const {
+    const std::int64_t lines = plan.rotary.lines_per_revolution;
+    if (!plan.spin) {  // it is supposed to be in place when a pass begins
+      const Rational begin = pass % 2 == 0 ? Rational(0) : plan.rotary.edges_per_revolution;
+      return begin + Rational(check.edges_in_run(pass * lines, tick));
+    }
+    const Integer edge = Integer(1) << static_cast<unsigned>(plan.ab.counter_bits - 2);
+    Integer rest = 0;
+    for (std::int64_t before = 0; before < pass; ++before) {
+      rest += *check.rest_counts(before * lines) / edge;
+    }
+    const Integer up = plan.spin->up.counts / edge;
+    return Rational(Integer(rest + check.spun_up_counts(pass * lines) / edge - up)) +
+           Rational(check.edges_in_run(pass * lines, tick));
+  }
+};
+
+TEST(ErrorModel, PassesOfAPanelLandWhereTheSignedEdgesOfTheBoardPutThem) {
+  SCOPED_TRACE(Dice::note());
+  Dice dice;
+  for (int trial = 0; trial < 40; ++trial) {
+    Job job = small_job(50);
+    job.mode = Mode::flat;
+    job.fpga.fractional = dice.coin();
+    job.fpga.max_prescaler = static_cast<std::uint64_t>(dice.between(1, 9));
+    job.stage = {
+        dice.between(2, 60), ratio(dice.between(50, 90), 9), 20, static_cast<int>(dice.between(0, 8)), 20'000'000, {}};
+    if (dice.coin()) {
+      job.stage.limits = {2000, 200'000, 50'000'000};
+    }
+    job.limits.seam_um = 100;
+    const Result<Plan> made = make_plan(job, 40, 3);
+    ASSERT_TRUE(made) << made.error().message;
+    const Plan& plan = made.value();
+    TwinSettings twin = no_terms();
+    twin.drift = twin.ab_step = true;
+    const ErrorModel model = model_of(plan, nullptr, twin);
+    const PanelStage stage{plan};
+    const Rational per_edge_um = plan.rotary.circumference_um / plan.rotary.edges_per_revolution;
+    const std::int64_t lines = plan.rotary.lines_per_revolution;
+    for (int pulse = 0; pulse < 60; ++pulse) {
+      const std::int64_t pass = dice.between(0, 2);
+      const std::int64_t line = dice.between(0, lines - 1);
+      const std::int64_t pixel = dice.between(0, plan.line.pixels - 1);
+      const bool reverse = line_is_reverse(plan, pass, line);
+      const std::int64_t slot =
+          reverse ? plan.line.reverse_first_slot + plan.line.pixels - 1 - pixel : plan.line.forward_first_slot + pixel;
+      const std::int64_t tick = (pass * lines + line) * plan.line.ticks + slot * plan.clock.ticks_per_slot +
+                                (reverse ? plan.line.offset_remainder_ticks : 0);
+      // On the panel the lines of a way back come from its end, each from its far side.
+      const Rational along_pass = ratio(tick - pass * lines * plan.line.ticks, lines * plan.line.ticks);
+      const bool back = pass % 2 != 0;
+      const Rational target_um = (back ? Rational(1 - along_pass) : along_pass) * plan.rotary.circumference_um;
+      const Rational landed_um = stage.edges_at(pass, tick) * per_edge_um;
+      ASSERT_NEAR(model.pulse_error(pass, line, pixel).across_um,
+                  to_double(Rational(target_um - landed_um)) * (back ? -1 : 1), 1e-6)
+          << "pass " << pass << ", line " << line << (plan.spin ? ", spun up" : "");
+    }
+  }
+}
+
+TEST(ErrorModel, AServoLagsTheOtherWayOnTheWayBack) {
+  Job job = small_job(50);
+  job.mode = Mode::flat;
+  job.stage = {50, 8, 20, 4, 2'000'000, {}};
+  const Plan plan = plan_of(job, 40, 2);
+  TwinSettings twin = no_terms();
+  twin.servo = {true, 50, ratio(7, 10)};
+  const ErrorModel model = model_of(plan, nullptr, twin);
+  const double there = model.pulse_error(0, 20, 7).across_um;
+  EXPECT_GT(there, 0) << "short of its target, which lies onwards";
+  EXPECT_NEAR(model.pulse_error(1, 20, 7).across_um, there, 1e-9) << "the same the way the stage goes, so on the panel "
+                                                                     "the two passes are apart by twice the lag";
+}
+
 }  // namespace
 }  // namespace gravure::test

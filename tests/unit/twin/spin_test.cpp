@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <utility>
+
 #include "gravure/core/spin_phase.hpp"
+#include "gravure/pipeline/window_reader.hpp"
 #include "twin_support.hpp"
 
 /// Jobs whose axes are spun up from rest, on the emulated board.
@@ -98,6 +102,118 @@ TEST(SpinUp, OneCountTooManyIsSeen) {
   const Result<VerifyReport> report = verify_on(small, 0);
   ASSERT_TRUE(report) << report.error().message;
   expect_violation(report.value(), "the spin-up ends after ");
+}
+
+/// A stage that goes to and fro, from rest to rest each time.
+void panel_job(SmallJob& small, bool fractional) {
+  prepare(small, LinesAlong::rows, kLines, 45, 4);
+  small.job.mode = Mode::flat;
+  small.job.fpga.fractional = fractional;
+  small.job.limits.seam_um = 100;
+  small.job.stage = {kLines, 8, 20, 4, 2'000'000, {1000, 100'000, 20'000'000}};
+  compile_job(small, 4, LayerOrder::sequence);
+}
+
+/// What a board could get wrong of the runs of a panel.
+struct Wrong {
+  bool always_forward = false;
+  bool short_spin_down = false;
+  bool no_spin_up_of_pass_2 = false;
+  bool no_spin_down = false;
+};
+
+class WrongBoard final : public LineDevice {
+ public:
+  WrongBoard(PinObserver& observer, const Wrong& wrong) : device_(&observer), wrong_(wrong) {}
+  Result<void> configure(const DeviceSetup& setup) override {
+    DeviceSetup other = setup;
+    other.backward = setup.backward && !wrong_.always_forward;
+    if (wrong_.short_spin_down) {
+      const auto shortest = std::min_element(
+          other.spin_down.begin(), other.spin_down.end(), [](const ScheduleSegment& a, const ScheduleSegment& b) {
+            return std::pair(a.increment == 0, a.seeds) < std::pair(b.increment == 0, b.seeds);
+          });
+      --shortest->increment;
+    }
+    if (wrong_.no_spin_up_of_pass_2 && setup.begin_revolution == 1) {
+      other.spin_up.clear();
+    }
+    if (wrong_.no_spin_down) {
+      other.spin_down.clear();
+    }
+    return device_.configure(other);
+  }
+  Result<void> send(const LineFrame& frame) override { return device_.send(frame); }
+  DeviceStatus status() const override { return device_.status(); }
+
+ private:
+  emulator::EmulatedDevice device_;
+  Wrong wrong_;
+};
+
+void expect_seen(const SmallJob& small, const Wrong& wrong, const std::string& part) {
+  const Result<VerifyReport> report = verify(
+      [&]() -> Result<std::unique_ptr<LineSource>> {
+        return std::unique_ptr<LineSource>(std::make_unique<MemorySource>(small.program));
+      },
+      [&](PinObserver& observer) { return std::make_unique<WrongBoard>(observer, wrong); },
+      [&]() { return make_layer_lines(small.program.header, small.stack, small.images, 1 << 20); }, {});
+  ASSERT_TRUE(report) << report.error().message;
+  if (part.empty()) {
+    EXPECT_TRUE(report.value().violations.empty()) << all(report.value().violations);
+  } else {
+    expect_violation(report.value(), part);
+  }
+}
+
+TEST(Panel, BoardsThatRunItsPassesWrongAreSeen) {
+  for (const bool fractional : {false, true}) {
+    SmallJob small;
+    panel_job(small, fractional);
+    if (HasFatalFailure()) {
+      return;
+    }
+    expect_seen(small, {}, "");
+    expect_seen(small, {.always_forward = true}, "the axis stands wrong at ");
+    expect_seen(small, {.always_forward = true}, "the first at revolution 1, line ");
+    expect_seen(small, {.short_spin_down = true}, "after it the device is at rest ");
+    expect_seen(small, {.no_spin_up_of_pass_2 = true},
+                "the first at revolution 1, line 0: the spin-up ends after 0 counts");
+    expect_seen(small, {.no_spin_down = true}, "does not come to rest");
+  }
+}
+
+TEST(Panel, ComesBackToItsFirstPlaceAfterEveryOtherPassToTheCount) {
+  for (const bool fractional : {false, true}) {
+    SmallJob small;
+    panel_job(small, fractional);
+    const Plan& plan = small.program.header.plan;
+    ASSERT_TRUE(plan.spin);
+    Integer place = 0;
+    std::int64_t edges = 0;
+    for (const BoardRun& run : runs_of(plan)) {
+      emulator::EmulatedDevice device;
+      ASSERT_TRUE(device.configure(device_setup(plan, run.first_revolution, 0)));
+      EXPECT_FALSE(device.status().axis_at_rest) << "it has not run yet";
+      MemorySource program(small.program);
+      ProgramChunk chunk;
+      for (std::int64_t k = 0; k * small.program.lines_per_chunk < kLines; ++k) {
+        ASSERT_TRUE(chunk.load(
+            program, {small.program.header.layer_of_revolution[static_cast<std::size_t>(run.first_revolution)], k}));
+        ASSERT_TRUE(chunk.send(small.program.header, run.first_revolution, device));
+      }
+      const std::optional<AxisState> rest = device.status().axis_at_rest;
+      ASSERT_TRUE(rest);
+      EXPECT_EQ(rest->edges % 4, 0) << "A and B are low: loading the counter for the next pass makes no edge";
+      EXPECT_EQ(rest->edges < 0, run.backward);
+      place += counts_of(*rest);
+      edges += rest->edges;
+      if (run.backward) {
+        EXPECT_EQ(place, 0);
+        EXPECT_EQ(edges, 0);
+      }
+    }
+  }
 }
 
 }  // namespace

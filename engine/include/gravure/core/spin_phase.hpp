@@ -28,6 +28,11 @@ struct SpinStart {
 };
 SpinStart spin_start(const AbPlan& ab, const std::optional<AxisSpin>& spin);
 
+/// Flat mode: by how many edges the stage leads when the lines of a way back begin, because a whole A-B period is too
+/// coarse for where the pass before has ended: both spin-ups and the pass, less what lies between the places of rest. 0
+/// without ramps.
+Rational way_back_lead(const Plan& plan);
+
 /// The counts of a device's axis, with sign.
 Integer counts_of(const AxisState& state);
 
