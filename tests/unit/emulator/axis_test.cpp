@@ -3,6 +3,7 @@
 #include <optional>
 #include <random>
 
+#include "gravure/core/spin_phase.hpp"
 #include "gravure/fpga/ab_counter.hpp"
 #include "recorder.hpp"
 
@@ -91,7 +92,7 @@ TEST(EmulatedDeviceAxis, CarriageStandsStillUnlessAsked) {
   EmulatedDevice device(&recorder);
   ASSERT_TRUE(device.configure(small_setup()));
   ASSERT_TRUE(send(device, 0, 0));
-  EXPECT_EQ(device.status().carriage.edges, 0U);
+  EXPECT_EQ(device.status().carriage.edges, 0);
 }
 
 TEST(EmulatedDeviceAxis, CarriageRegistersAreChecked) {
@@ -154,6 +155,58 @@ TEST(EmulatedDeviceAxis, StatusTellsTheAxisAtItsTick) {
   expect_same(before, recorder.lines.back().axis);
 }
 
+/// Revolution `revolution` of small_setup() alone, as a run.
+DeviceSetup run_setup(std::int64_t revolution, bool backward) {
+  DeviceSetup setup = small_setup();
+  setup.begin_revolution = setup.first_revolution = revolution;
+  setup.end_revolution = revolution + 1;
+  setup.backward = backward;
+  return setup;
+}
+
+TEST(EmulatedDeviceAxis, CountsFromTheFirstLineOfItsRunAndBackwardsBelowZero) {
+  Recorder forward;
+  Recorder backward;
+  EmulatedDevice first(&forward);
+  EmulatedDevice second(&backward);
+  ASSERT_TRUE(first.configure(run_setup(0, false)));
+  DeviceSetup back = run_setup(1, true);
+  back.carriage.increment = 777;
+  ASSERT_TRUE(second.configure(back));
+  for (std::int64_t line = 0; line < 4; ++line) {
+    ASSERT_TRUE(send(first, 0, line));
+    ASSERT_TRUE(send(second, 1, line));
+    const AxisState there = forward.lines.back().axis;
+    const AxisState way_back = backward.lines.back().axis;
+    EXPECT_EQ(way_back.edges, -there.edges);
+    EXPECT_EQ(counts_of(way_back), -counts_of(there));
+    EXPECT_GE(backward.lines.back().carriage.edges, 0) << "the other channel has one way";
+    EXPECT_EQ(backward.lines.back().ordinal, line + 4);
+  }
+  EXPECT_LT(second.status().axis.edges, 0);
+  test::expect_refused(send(second, 2, 0), {"the run up to revolution 1 is over"});
+}
+
+TEST(EmulatedDeviceAxis, GoesToRestAfterTheLastLineOfTheRunAlone) {
+  for (const bool backward : {false, true}) {
+    DeviceSetup setup = run_setup(1, backward);
+    setup.spin_up = {{100, 20}, {600, 8}};
+    setup.spin_down = {{900, 6}, {50, 4}};
+    EmulatedDevice device;
+    ASSERT_TRUE(device.configure(setup));
+    for (std::int64_t line = 0; line < 4; ++line) {
+      EXPECT_FALSE(device.status().axis_at_rest);
+      ASSERT_TRUE(send(device, 1, line));
+    }
+    // On every second of 28 + 240 + 10 ticks a step, each with 5/7 of a count more.
+    const Integer counts = 10 * 100 + 4 * 600 + 120 * 1234 + 3 * 900 + 2 * 50 + 139 * 5 / 7;
+    ASSERT_TRUE(device.status().axis_at_rest);
+    EXPECT_EQ(counts_of(*device.status().axis_at_rest), backward ? Integer(-counts) : counts);
+    EXPECT_EQ(device.status().axis_at_rest->edges, static_cast<std::int64_t>(counts / (1 << 14)) * (backward ? -1 : 1));
+    EXPECT_FALSE(device.status().carriage_at_rest) << "it has no spin-down";
+  }
+}
+
 TEST(EmulatedDeviceAxis, CountsBeyondSixtyFourBits) {
   DeviceSetup setup = small_setup();
   setup.counter_bits = 64;
@@ -165,9 +218,9 @@ TEST(EmulatedDeviceAxis, CountsBeyondSixtyFourBits) {
   ASSERT_TRUE(send(device, 0, 0));
   ASSERT_TRUE(send(device, 0, 1));
   // 60 * (2^62 - 1) + floor(60 * 5 / 7) = 15 * 2^64 - 60 + 42
-  EXPECT_EQ(recorder.lines.back().axis.counts_high, 14U);
+  EXPECT_EQ(recorder.lines.back().axis.counts_high, 14);
   EXPECT_EQ(recorder.lines.back().axis.counts_low, ~std::uint64_t{0} - 17);
-  EXPECT_EQ(recorder.lines.back().axis.edges, 59U);
+  EXPECT_EQ(recorder.lines.back().axis.edges, 59);
 }
 
 }  // namespace

@@ -106,6 +106,52 @@ TEST(MachineWaves, ShowsEveryTickOfAJobAsTheClockedModelsDo) {
   }
 }
 
+/// Every revolution a run of its own, to and fro.
+DeviceSetup pass_setup(std::int64_t pass) {
+  DeviceSetup setup = small_setup();
+  setup.begin_revolution = setup.first_revolution = pass;
+  setup.end_revolution = pass + 1;
+  setup.backward = pass % 2 != 0;
+  return setup;
+}
+
+TEST(MachineWaves, BeginEveryRunWithItsCounterAndGoBackWithThePinsExchanged) {
+  for (const std::uint64_t first : {std::uint64_t{0}, 3 * kLineTicks + 7, 4 * kLineTicks, 6 * kLineTicks + 1}) {
+    Samples samples;
+    MachineWaves::Setup shown = wave_setup(first, kEnd - 1, 1);
+    const std::int64_t first_pass = static_cast<std::int64_t>(first / (4 * kLineTicks));
+    shown.device = pass_setup(first_pass);
+    MachineWaves waves(shown, samples);
+    EmulatedDevice device(&waves);
+    for (std::int64_t pass = first_pass; pass < 3; ++pass) {
+      if (pass > first_pass) {
+        waves.start_run(pass_setup(pass));
+      }
+      ASSERT_TRUE(device.configure(pass_setup(pass)));
+      for (std::int64_t line = 0; line < 4; ++line) {
+        ASSERT_TRUE(test::send(device, pass, line));
+      }
+    }
+    waves.finish();
+    const std::vector<SignalValues>& seen = samples.to(kEnd - 1);
+    ASSERT_EQ(seen.size(), kEnd - first);
+    const DeviceSetup setup = small_setup();
+    for (std::uint64_t tick = first; tick < kEnd; ++tick) {
+      const std::uint64_t pass = tick / (4 * kLineTicks);
+      const fpga::AbPins pins = fpga::position_after({.bits = setup.counter_bits,
+                                                      .prescaler = setup.prescaler,
+                                                      .increment = setup.increment,
+                                                      .fraction_num = setup.fraction_num,
+                                                      .fraction_den = setup.fraction_den},
+                                                     tick - pass * 4 * kLineTicks)
+                                    .pins;
+      ASSERT_EQ(seen[tick - first][0], (pass == 1 ? pins.b : pins.a) ? 1U : 0U) << "A at tick " << tick;
+      ASSERT_EQ(seen[tick - first][1], (pass == 1 ? pins.a : pins.b) ? 1U : 0U) << "B at tick " << tick;
+      ASSERT_EQ(seen[tick - first][5], pass);
+    }
+  }
+}
+
 TEST(MachineWaves, ShowsAnyWindowOfThatFromItsOwnLinesAlone) {
   SCOPED_TRACE(gravure::test::Dice::note());
   gravure::test::Dice dice;
