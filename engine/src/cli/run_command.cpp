@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "gravure/emulator/fired_lines.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/session/run.hpp"
@@ -186,6 +187,9 @@ Result<int> run(const Options& options, const Command& command) {
                                                     .lines_per_revolution = per_revolution}));
   GRAVURE_CHECK(session::check_options(journal, options.run.resume));
   GRAVURE_TRY(const OpenDevice device, open_device(options.device));
+  if (options.device.rfind("emulated:", 0) == 0) {  // for `gravure exposure`
+    GRAVURE_CHECK(emulator::note_program(device.link->identity().place, std::filesystem::absolute(options.program)));
+  }
   std::optional<RunReport> report;
   {
     RunProgress progress;
