@@ -123,6 +123,7 @@ int run(int argc, char** argv) {
   gravure::cli::add_verify(app, command);
   gravure::cli::add_emulate(app, command);
   gravure::cli::add_run(app, command);
+  gravure::cli::add_exposure(app, command);
   gravure::cli::add_trajectory(app, command);
   gravure::cli::add_export(app, command);
   gravure::cli::add_calibrate(app, command);

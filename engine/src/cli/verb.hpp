@@ -90,6 +90,7 @@ void add_unroll(CLI::App& app, Command& command);
 void add_verify(CLI::App& app, Command& command);
 void add_emulate(CLI::App& app, Command& command);
 void add_run(CLI::App& app, Command& command);
+void add_exposure(CLI::App& app, Command& command);
 void add_trajectory(CLI::App& app, Command& command);
 void add_export(CLI::App& app, Command& command);
 void add_calibrate(CLI::App& app, Command& command);

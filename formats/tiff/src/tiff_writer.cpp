@@ -38,11 +38,11 @@ std::uint16_t libtiff_code(TiffCompression compression) {
 
 Result<void> check_page(const std::string& path, const BilevelTiffPage& page) {
   constexpr std::int64_t kMaxHeight = std::numeric_limits<std::int32_t>::max();
-  if (page.width < 1 || page.width > kMaxTiffRowBytes * 8 || page.height < 1 || page.height > kMaxHeight) {
+  const std::int64_t most = kMaxTiffRowBytes * 8 / page.bits;
+  if (page.width < 1 || page.width > most || page.height < 1 || page.height > kMaxHeight) {
     return Error{ErrorCode::out_of_range, path + ": a page of " + std::to_string(page.width) + " x " +
                                               std::to_string(page.height) + " pixels: the width must be 1 to " +
-                                              std::to_string(kMaxTiffRowBytes * 8) + ", the height 1 to " +
-                                              std::to_string(kMaxHeight)};
+                                              std::to_string(most) + ", the height 1 to " + std::to_string(kMaxHeight)};
   }
   for (const auto& dots : {page.x_dots_per_mm, page.y_dots_per_mm}) {
     if (page.x_dots_per_mm.has_value() != page.y_dots_per_mm.has_value() ||
@@ -54,9 +54,13 @@ Result<void> check_page(const std::string& path, const BilevelTiffPage& page) {
   return {};
 }
 
+std::int64_t page_row_bytes(const BilevelTiffPage& page) {
+  return row_bytes(page.bits == 8 ? SampleType::u8 : SampleType::bit, page.width);
+}
+
 /// Fax codes of noise take up to about 2.5 times the raw bits; the other codecs stay near them at worst.
 bool needs_big_tiff(const BilevelTiffPage& page, std::int64_t page_count) {
-  const double raw = static_cast<double>(row_bytes(SampleType::bit, page.width)) * static_cast<double>(page.height) *
+  const double raw = static_cast<double>(page_row_bytes(page)) * static_cast<double>(page.height) *
                      static_cast<double>(std::max<std::int64_t>(page_count, 1));
   return raw * (page.compression == TiffCompression::g4 ? 2.5 : 1.0) > kClassicLimitBytes;
 }
@@ -95,7 +99,7 @@ class BilevelTiffWriter::State {
 Result<void> BilevelTiffWriter::State::begin(const BilevelTiffPage& page) {
   GRAVURE_CHECK(check_page(path(), page));
   page_ = page;
-  row_bytes_ = row_bytes(SampleType::bit, page.width);
+  row_bytes_ = page_row_bytes(page);
   rows_per_strip_ = std::clamp<std::int64_t>(kStripBytes / row_bytes_, 1, page.height);
   rows_written_ = 0;
   strip_.clear();
@@ -103,7 +107,7 @@ Result<void> BilevelTiffWriter::State::begin(const BilevelTiffPage& page) {
   TIFF* const tiff = handle_.get();
   bool done = TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(page.width)) == 1;
   done = TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(page.height)) == 1 && done;
-  done = TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 1) == 1 && done;
+  done = TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, page.bits) == 1 && done;
   done = TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1) == 1 && done;
   done = TIFFSetField(tiff, TIFFTAG_COMPRESSION, libtiff_code(page.compression)) == 1 && done;
   done = TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC,
@@ -129,7 +133,7 @@ Result<void> BilevelTiffWriter::State::append(std::span<const std::byte> rows) {
                                               std::to_string(row_bytes_) + " bytes and " + std::to_string(left) +
                                               " of them are left on this page"};
   }
-  const auto unused_bits = static_cast<unsigned>(row_bytes_ * 8 - page_.width);
+  const auto unused_bits = static_cast<unsigned>(row_bytes_ * 8 - page_.width * page_.bits);
   const auto last_mask = static_cast<std::byte>(0xFFU << unused_bits & 0xFFU);
   for (; !rows.empty(); rows = rows.subspan(static_cast<std::size_t>(row_bytes_))) {
     strip_.insert(strip_.end(), rows.begin(), rows.begin() + row_bytes_);

@@ -1,5 +1,6 @@
 #include "gravure/core/exposure_map.hpp"
 #include "gravure/pipeline/window_reader.hpp"
+#include "gravure/twin/exposure_count.hpp"
 #include "gravure/twin/unroll.hpp"
 #include "twin_support.hpp"
 
@@ -177,6 +178,117 @@ TEST(Modes, ComeBackAsTheImagesTheyWereMadeFrom) {
     if (HasFailure()) {
       return;
     }
+  }
+}
+
+/// Every line that the board fires, into a count.
+class Counter final : public PinObserver {
+ public:
+  Counter(ExposureCount& count, std::int64_t lines_per_revolution) : count_(count), lines_(lines_per_revolution) {}
+  void on_line(const ExecutedLine& line) override {
+    const Result<void> added = count_.add(line.ordinal / lines_, line.ordinal % lines_, line.first_slot, line.fired);
+    EXPECT_TRUE(added) << added.error().message;
+  }
+
+ private:
+  ExposureCount& count_;
+  std::int64_t lines_;
+};
+
+/// Runs all of a program, `times` times.
+void fire(const SmallJob& small, ExposureCount& count, int times) {
+  MemorySource source(small.program);
+  const Plan& plan = small.program.header.plan;
+  Counter counter(count, plan.rotary.lines_per_revolution);
+  const std::unique_ptr<LineDevice> device = emulated()(counter);
+  ProgramChunk chunk;
+  for (int time = 0; time < times; ++time) {
+    for (std::int64_t r = 0; r < plan.job.revolutions; ++r) {
+      ASSERT_TRUE(device->configure(device_setup(plan, r, 0)));
+      const std::int64_t layer = small.program.header.layer_of_revolution[static_cast<std::size_t>(r)];
+      for (std::int64_t k = 0; k * source.lines_per_chunk() < plan.rotary.lines_per_revolution; ++k) {
+        ASSERT_TRUE(chunk.load(source, {layer, k}));
+        ASSERT_TRUE(chunk.send(small.program.header, r, *device));
+      }
+    }
+  }
+}
+
+/// Fired `times` times wherever the picture has the colour that fires, some rows at a time.
+void expect_counts(SmallJob& small, const Shape& shape, std::int64_t image, Result<ExposureCount> made, int times) {
+  ASSERT_TRUE(made) << made.error().message;
+  ExposureCount& count = made.value();
+  const std::vector<std::byte> expected = picture(small, shape, image);
+  const auto [width, height] = count.size();
+  const std::int64_t row_size = row_bytes(SampleType::bit, width);
+  const std::int64_t part = (height + 1) / 2;
+  for (std::int64_t first = 0; first < height; first += part) {
+    const std::int64_t end = std::min(first + part, height);
+    count.start(first, end);
+    fire(small, count, times);
+    ASSERT_EQ(count.rows().size(), static_cast<std::size_t>((end - first) * width));
+    for (std::int64_t row = first; row < end; ++row) {
+      for (std::int64_t column = 0; column < width; ++column) {
+        const auto byte = expected[static_cast<std::size_t>(row * row_size + column / 8)];
+        const bool white = (byte & static_cast<std::byte>(0x80U >> static_cast<unsigned>(column % 8))) != std::byte{0};
+        const int fired = white == (shape.fires == Fires::white) ? times : 0;
+        ASSERT_EQ(std::to_integer<int>(count.rows()[static_cast<std::size_t>((row - first) * width + column)]), fired)
+            << "row " << row << ", column " << column;
+      }
+    }
+  }
+}
+
+TEST(ExposureCount, CountsEveryPixelOfEveryPictureAsOftenAsItFired) {
+  SCOPED_TRACE(Dice::note());
+  Dice dice;
+  for (int trial = 0; trial < 60; ++trial) {
+    const Shape shape = random_shape(dice, static_cast<Mode>(trial % 3));
+    SCOPED_TRACE(text_of(shape));
+    SmallJob small;
+    prepare(small, shape);
+    compile_shape(small, shape, dice.between(1, 8));
+    if (HasFatalFailure()) {
+      return;
+    }
+    const ProgramHeader& header = small.program.header;
+    const bool helical = shape.mode == Mode::helical;
+    const std::int64_t pictures = helical ? shape.layers : revolutions_per_band(header.plan);
+    const std::int64_t chosen = dice.between(0, pictures - 1);
+    expect_counts(
+        small, shape, chosen,
+        helical ? ExposureCount::make(header, std::nullopt, chosen) : ExposureCount::make(header, chosen, std::nullopt),
+        static_cast<int>(dice.between(1, 2)));
+    if (HasFailure()) {
+      return;
+    }
+  }
+}
+
+TEST(ExposureCount, RefusesWhatTheProgramDoesNotHave) {
+  SmallJob small;
+  sound_job(small);
+  const ProgramHeader& header = small.program.header;
+  EXPECT_EQ(ExposureCount::make(header, 8, std::nullopt).error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(ExposureCount::make(header, std::nullopt, 0).error().code, ErrorCode::bad_argument);
+  Result<ExposureCount> made = ExposureCount::make(header, std::nullopt, std::nullopt);
+  ASSERT_TRUE(made);
+  ExposureCount& count = made.value();
+  count.start(0, count.size().height);
+  const std::vector<std::byte> bits(static_cast<std::size_t>(header.line_bytes()), std::byte{0x80});
+  const std::int64_t forward = header.plan.line.forward_first_slot;
+  const std::int64_t reverse = header.plan.line.reverse_first_slot;
+  for (int time = 0; time < 255; ++time) {
+    ASSERT_TRUE(count.add(0, 0, forward, bits));
+  }
+  EXPECT_EQ(count.add(0, 0, forward, bits).error().code, ErrorCode::out_of_range);
+  EXPECT_TRUE(count.add(0, 1, reverse, bits));
+  EXPECT_TRUE(count.add(0, 1, reverse - 1, bits)) << "and part of a slot later";
+  for (const Result<void>& refused :
+       {count.add(8, 0, forward, bits), count.add(0, 13, forward, bits), count.add(0, 0, forward + 1, bits),
+        count.add(0, 0, forward - 1, bits), count.add(0, 0, forward, std::span(bits).first(2))}) {
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::bad_file);
   }
 }
 
