@@ -29,7 +29,7 @@ class Writes {
     }
   }
   void command(std::uint32_t bits) { put(fpga::kCommandRegister, bits); }
-  const Result<void>& refused() const { return refused_; }
+  Result<void> refused() const { return refused_; }
   std::vector<RegisterWrite> take() { return std::move(list_); }
 
  private:
