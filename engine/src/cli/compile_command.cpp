@@ -52,9 +52,7 @@ Result<int> run(const Options& options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite(options.output, inputs));
   GRAVURE_TRY(const ProgramHeader header,
               compile_job(loaded, files, options.output, grv_options(options.compression), command));
-  for (const std::string& warning : header.plan.warnings) {
-    warn(warning);
-  }
+  warn_of(loaded);
   const Json result = json_of(header, options.output);
   if (command.json) {
     print_json(result);

@@ -81,6 +81,23 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
   return loaded;
 }
 
+void warn_of(const LoadedJob& loaded) {
+  for (const std::string& warning : loaded.plan.warnings) {
+    std::size_t first = std::string::npos;
+    std::string place;
+    for (const auto& [key, at] : loaded.job.places) {
+      const std::size_t found = key.find('.') == std::string::npos ? std::string::npos : warning.find(key);
+      const std::size_t end = found == std::string::npos ? found : found + key.size();
+      const bool whole = end < warning.size() && std::string_view(" :,;)").find(warning[end]) != std::string_view::npos;
+      if (whole && found < first) {
+        first = found;
+        place = loaded.job.place_of(key);
+      }
+    }
+    warn(place + warning);
+  }
+}
+
 std::int64_t StoredLayers::image_layer(std::int64_t revolution) const {
   return layer_of_revolution(order_, layers_, revolution % revolutions_per_band(plan_));
 }

@@ -32,6 +32,9 @@ struct LoadedJob {
 /// Reads and plans a job. A job that gives pixels_per_line can be planned without its images, unless `need_images`.
 Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, bool need_images);
 
+/// Prints the warnings of a loaded job, each with the place of the first key of the job that it names.
+void warn_of(const LoadedJob& loaded);
+
 /// Compiles a loaded job (with its images) to the program file `output`; layers that no revolution uses are left out.
 Result<ProgramHeader> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const std::string& output,
                                   const GrvOptions& grv, const Command& command);

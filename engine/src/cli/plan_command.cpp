@@ -59,7 +59,7 @@ std::string band_places(const BandsPlan& bands) {
     text += (band == 0 ? "" : ", ") + number(bands.step_mm * Rational(band));
   }
   return text + (bands.count > kShown ? ", ... mm" : " mm") +
-         fmt::format(" along the axis; {} mm from one to the next", number(bands.step_mm));
+         fmt::format(" along the axis; {} mm from one to the next, not in the time of the job", number(bands.step_mm));
 }
 
 std::string ramp_text(const SpinPlan& ramp, const char* unit) {
@@ -152,8 +152,9 @@ std::string plan_text(const Plan& plan) {
     }
     row("spin-down", ramp_text(spin.down, unit));
     if (turns || flat) {
-      row("in all", fmt::format("{:.3f} s with {}", to_double(spin.total_s),
-                                flat ? "a spin-up and a spin-down each pass" : "spin-up and spin-down"));
+      row("in all", fmt::format("{:.3f} s with {}{}", to_double(spin.total_s),
+                                flat ? "a spin-up and a spin-down each pass" : "spin-up and spin-down",
+                                plan.bands ? ", but without the moves from band to band" : ""));
     }
   };
   if (plan.spin) {
@@ -223,9 +224,7 @@ void add_plan(CLI::App& app, Command& command) {
                           order_name(image.order)));
         print(repeat_text(loaded));
       }
-      for (const std::string& warning : loaded.plan.warnings) {
-        warn(warning);
-      }
+      warn_of(loaded);
       return kDone;
     };
   });

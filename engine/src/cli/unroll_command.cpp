@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -93,7 +96,21 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& opti
   return page;
 }
 
+/// What is written is TIFF, whatever it is called.
+Result<void> check_name(const std::string& output) {
+  std::string suffix = std::filesystem::path(output).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (suffix.empty() || suffix == ".tif" || suffix == ".tiff") {
+    return {};
+  }
+  return Error{ErrorCode::bad_argument, "--output " + output + ": unroll writes TIFF alone: call it " +
+                                            std::filesystem::path(output).replace_extension(".tif").string() +
+                                            " and convert it with another program"};
+}
+
 Result<int> run(const Options& options, const Command& command) {
+  GRAVURE_CHECK(check_name(options.output));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
   const std::optional<LayerOrigin> origin = picture_origin(header, options);

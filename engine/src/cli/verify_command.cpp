@@ -176,7 +176,8 @@ std::string text_of(const VerifyReport& report, const ProgramHeader& header, boo
   if (report.images_compared) {
     text += fmt::format("landed pixels that differ from the images: {}\n", report.wrong_pixels);
   }
-  text += fmt::format("\n{:>16}  {:>12}  {:>10}\n", "after revolution", "seam um", "limit um");
+  text += fmt::format("\n{:>16}  {:>12}  {:>10}\n", header.plan.mode == Mode::flat ? "after pass" : "after revolution",
+                      "seam um", "limit um");
   for (const std::int64_t r : shown_revolutions(report.revolutions, every)) {
     text += fmt::format("{:>16}  {:>12.6g}  {:>10g}\n", r, report.seam[static_cast<std::size_t>(r)].drift_um,
                         report.seam_limit_um);
@@ -316,9 +317,7 @@ Result<int> verify_job(const Options& options, const Command& command) {
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.input, files, true));
   GRAVURE_CHECK(compile_job(loaded, files, path, {}, command));
-  for (const std::string& warning : loaded.plan.warnings) {
-    warn(warning);
-  }
+  warn_of(loaded);
   return verify_program(path, options, command);
 }
 

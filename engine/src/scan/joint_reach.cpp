@@ -68,11 +68,11 @@ Range across_lines(const Plan& plan) {
   return {std::min(there.from, -back.to), std::max(there.to, -back.from)};
 }
 
-/// Degrees of the workpiece, from rest.
+/// Degrees of the workpiece, from rest; each band is a run of its own, with its ramps.
 Range turning(const Plan& plan) {
-  const double marked_deg = 360 * static_cast<double>(plan.job.revolutions);
-  const double up_deg = plan.spin ? to_double(plan.spin->up.travel) : 0;
-  return with_ramps(Range{up_deg, up_deg + marked_deg}, plan.spin);
+  const Rational ramps_deg = plan.spin ? plan.spin->up.travel + plan.spin->down.travel : Rational(0);
+  const Rational run_deg = Rational(360) * Rational(revolutions_per_band(plan)) + ramps_deg;
+  return {0, to_double(Rational(run_deg * Rational(plan.bands ? plan.bands->count : 1)))};
 }
 
 /// +1 where positive motion of the joint brings the head further along the direction over the workpiece.

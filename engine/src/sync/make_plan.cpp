@@ -84,6 +84,16 @@ void plan_rotary_axis(const RotarySettings& settings, RotaryPlan& rotary, const 
                                       settings.gear_workpiece_turns);
 }
 
+/// An axis outside the workpiece turns nothing.
+void check_run_out(const Job& job, const RotaryPlan& rotary, Violations& violations) {
+  const TwinSettings::RunOut& run_out = job.twin.run_out;
+  const Rational radius_um = rotary.circumference_um / (2 * pi());
+  if (job.mode != Mode::flat && run_out.enabled && radius_um > 0 && run_out.eccentricity_um >= radius_um) {
+    violations.conflict(ErrorCode::out_of_range, "twin.run_out.eccentricity_um", number_text(run_out.eccentricity_um),
+                        "must be less than the radius of the workpiece, " + number_text(radius_um) + " um");
+  }
+}
+
 /// A pass of the stage stands for a revolution.
 void plan_stage(const StageSettings& settings, RotaryPlan& rotary, const Violations& violations) {
   if (!violations.sound({"stage.lines", "stage.line_pitch_um"})) {
@@ -178,6 +188,7 @@ std::int64_t check_line(const Job& job, std::int64_t pixels_per_line, Plan& plan
     return 0;
   }
   plan_line(job.scanner, pixels_per_line, plan.clock.ticks_per_slot, plan.line);
+  check_delay(job, plan.line, violations);
   const std::int64_t longest_line = longest_line_slots(job.scanner, plan.line);
   if (longest_line > kMostSlotsPerLine) {
     violations.refuse(ErrorCode::out_of_range, plan.carriage ? "carriage.feed_pixels" : "image.pixels_per_line",
@@ -187,7 +198,7 @@ std::int64_t check_line(const Job& job, std::int64_t pixels_per_line, Plan& plan
                           "board counts " +
                           std::to_string(kMostSlotsPerLine) + " at most: cut the picture into bands");
   }
-  check_window(job.scanner, plan.line, longest_line, plan.clock.ticks_per_slot, violations);
+  check_window(job, plan.line, longest_line, plan.clock.ticks_per_slot, violations);
   if (!violations.sound({"laser.seed_hz"}) || !lines_are_sound(violations)) {
     return longest_line;
   }
@@ -221,6 +232,7 @@ Result<Plan> make_plan(const Job& job, std::int64_t columns, std::int64_t exposu
     plan_lines_per_revolution(job.rotary, plan.rotary, violations);
     plan_rotary_axis(job.rotary, plan.rotary, violations);
   }
+  check_run_out(job, plan.rotary, violations);
   std::vector<AxisRequest> axes;
   std::int64_t longest_line = 0;
   if (job.mode != Mode::helical || lines_are_sound(violations)) {

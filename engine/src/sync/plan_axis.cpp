@@ -65,6 +65,16 @@ Result<AbSolution> solve(const Job& job, const Plan& plan, const AxisRequest& ax
   solution.wanted_increment = increment_per_clock(wanted_hz(plan, axis, slots), bits, fpga_hz);
   if (axis.fraction) {
     GRAVURE_TRY(solution.fraction, exact_fraction(solution.wanted_increment, bits));
+    if (solution.fraction.den > static_cast<std::uint64_t>(kMostFractionDen)) {
+      return Error{ErrorCode::out_of_range,
+                   job.place_of("fpga.fractional") + "fpga.fractional = true: the exact ratio of " + axis.section +
+                       " takes fraction_den = " + std::to_string(solution.fraction.den) +
+                       "; the board's second "
+                       "accumulator holds 1 to " +
+                       std::to_string(kMostFractionDen) +
+                       ": a shorter line, fewer lines, a simpler gear or a pitch of fewer digits makes it smaller, or "
+                       "take fractional out and accept a drift"};
+    }
     solution.pair = {.prescaler = 1, .increment = solution.fraction.increment};
     return solution;
   }
@@ -74,6 +84,16 @@ Result<AbSolution> solve(const Job& job, const Plan& plan, const AxisRequest& ax
       Rational(Integer(solution.pair.increment), Integer(solution.pair.prescaler)) / solution.wanted_increment -
       Rational(1);
   return solution;
+}
+
+Result<std::vector<AbSolution>> solve_all(const Job& job, const Plan& plan, const std::vector<AxisRequest>& axes,
+                                          std::int64_t slots) {
+  std::vector<AbSolution> solutions;
+  for (const AxisRequest& axis : axes) {
+    GRAVURE_TRY(AbSolution solution, solve(job, plan, axis, slots));
+    solutions.push_back(std::move(solution));
+  }
+  return solutions;
 }
 
 /// Micrometres by which the axis that drifts most is off after a revolution.
@@ -137,6 +157,7 @@ void check_reach(const Job& job, const Plan& plan, const AxisRequest& axis, std:
 Result<std::vector<AbSolution>> choose_line(const Job& job, const std::vector<AxisRequest>& axes, Plan& plan,
                                             std::int64_t longest_line) {
   std::vector<AbSolution> best;
+  std::optional<Error> refused;
   std::int64_t best_slots = 0;
   Rational least = 0;
   const auto reachable = [&](std::int64_t slots) {
@@ -148,11 +169,12 @@ Result<std::vector<AbSolution>> choose_line(const Job& job, const std::vector<Ax
     if (!window_fits(plan.line, slots) || !reachable(slots)) {
       continue;
     }
-    std::vector<AbSolution> solutions;
-    for (const AxisRequest& axis : axes) {
-      GRAVURE_TRY(AbSolution solution, solve(job, plan, axis, slots));
-      solutions.push_back(std::move(solution));
+    Result<std::vector<AbSolution>> solved = solve_all(job, plan, axes, slots);
+    if (!solved) {  // another length may have a ratio that fits the registers
+      refused = refused ? refused : solved.error();
+      continue;
     }
+    std::vector<AbSolution> solutions = std::move(solved).value();
     const Rational drift = worst_drift_um(axes, solutions);
     if (best.empty() || drift < least) {
       best = std::move(solutions);
@@ -162,6 +184,9 @@ Result<std::vector<AbSolution>> choose_line(const Job& job, const std::vector<Ax
         break;
       }
     }
+  }
+  if (best.empty() && refused) {
+    return *refused;
   }
   plan.line.slots = best_slots;
   return best;

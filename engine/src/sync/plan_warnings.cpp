@@ -83,6 +83,55 @@ void warn_carriage(const Plan& plan, std::vector<std::string>& warnings) {
   }
 }
 
+std::string missing_limits(const AxisLimits& limits, const std::string& section, const std::string& unit) {
+  std::string missing;
+  const auto name = [&missing, &section](const std::string& key, bool is_given) {
+    missing += is_given ? "" : (missing.empty() ? section + "." : ", ") + key;
+  };
+  name("max_speed_" + unit + "_s", limits.max_speed.has_value());
+  name("max_acceleration_" + unit + "_s2", limits.max_acceleration.has_value());
+  name("max_jerk_" + unit + "_s3", limits.max_jerk.has_value());
+  return missing;
+}
+
+/// An axis with some of the limits that a ramp takes, or without any beside one that has them all.
+void warn_limits(const Job& job, const Plan& plan, std::vector<std::string>& warnings) {
+  const bool other_spins = plan.spin.has_value() || (plan.carriage && plan.carriage->spin.has_value());
+  const auto check = [&](const AxisLimits& limits, const std::string& section, const std::string& unit, bool spins) {
+    const bool more_than_speed = limits.max_acceleration || limits.max_jerk;
+    if (!spins && (more_than_speed || other_spins)) {
+      warnings.push_back(missing_limits(limits, section, unit) + ": missing, so [" + section +
+                         "] is not spun up and down and must move at its marking speed from tick 0" +
+                         (other_spins ? ", while the other axis starts from rest" : ""));
+    }
+  };
+  if (plan.mode == Mode::flat) {
+    check(job.stage.limits, "stage", "mm", plan.spin.has_value());
+    return;
+  }
+  check(job.rotary.limits, "rotary", "deg", plan.spin.has_value());
+  if (plan.carriage) {
+    check(job.carriage.limits, "carriage", "mm", plan.carriage->spin.has_value());
+  }
+}
+
+/// Terms of the error budget that have figures but are not switched on.
+void warn_twin(const Job& job, std::vector<std::string>& warnings) {
+  const auto check = [&](const std::string& term, bool enabled) {
+    const std::string section = "twin." + term;
+    for (const auto& [key, place] : job.places) {
+      if (!enabled && key.size() > section.size() + 1 && key.compare(0, section.size() + 1, section + ".") == 0 &&
+          key != section + ".enabled") {
+        warnings.push_back(key + " has no effect: " + section + ".enabled is not true, so the term is off");
+        return;
+      }
+    }
+  };
+  check("servo", job.twin.servo.enabled);
+  check("run_out", job.twin.run_out.enabled);
+  check("thermal", job.twin.thermal.enabled);
+}
+
 /// Keys of a scanner that is not described.
 void warn_scanner(const ScannerSettings& scanner, std::vector<std::string>& warnings) {
   if (scanner.field_mm) {
@@ -120,6 +169,8 @@ std::vector<std::string> plan_warnings(const Job& job, const Plan& plan) {
   warn_start(job, plan, warnings);
   warn_encoder(plan, warnings);
   warn_scanner(job.scanner, warnings);
+  warn_limits(job, plan, warnings);
+  warn_twin(job, warnings);
   if (plan.carriage) {
     warn_carriage(plan, warnings);
   }

@@ -143,6 +143,7 @@ TEST(MakePlan, MultipliesTheWantedFrequencyByTheGear) {
 TEST(MakePlan, NeverDriftsWithTheFraction) {
   SCOPED_TRACE(seed_note());
   Random random;
+  int exact = 0;
   for (int trial = 0; trial < 300; ++trial) {
     Job job = trial % 2 == 0 ? roller_job() : tube_job();
     job.fpga.fractional = true;
@@ -152,8 +153,16 @@ TEST(MakePlan, NeverDriftsWithTheFraction) {
     job.rotary.gear_encoder_turns = random.count(1, 9);
     job.rotary.gear_workpiece_turns = random.count(9, 30);
     const std::int64_t turns = job.rotary.gear_workpiece_turns * random.count(1, 1000);
-    const Plan plan = planned(job, random.count(1000, 4000), turns);
+    const Result<Plan> made = make_plan(job, random.count(1000, 4000), turns);
+    if (!made) {
+      ASSERT_NE(made.error().message.find("the board's second accumulator holds 1 to 17179869183"), std::string::npos)
+          << made.error().message;
+      continue;
+    }
+    ++exact;
+    const Plan& plan = made.value();
     const AbPlan& ab = plan.ab;
+    EXPECT_LE(ab.fraction_den, (std::uint64_t{1} << 34) - 1);
     EXPECT_TRUE(ab.exact);
     EXPECT_EQ(ab.drift_lines_per_revolution, 0);
     EXPECT_EQ(ab.prescaler, 1U);
@@ -168,6 +177,7 @@ TEST(MakePlan, NeverDriftsWithTheFraction) {
     EXPECT_FALSE(ab.lines_until_limit.has_value());
     EXPECT_FALSE(warned(plan, "leads") || warned(plan, "lags"));
   }
+  EXPECT_GE(exact, 150) << "too few of them fit the board's fraction";
 }
 
 TEST(MakePlan, TakesTheLineWithTheSmallestDriftAndThenTheShortest) {
@@ -224,7 +234,7 @@ TEST(MakePlan, RoundsTheLineUpToWholeMicrovectors) {
 /// Fired backwards in time the reverse window must cover the slots of the forward one, later by the offset.
 TEST(MakePlan, MirrorsTheReverseWindowAndDelaysIt) {
   for (const std::int64_t pixels : {3500, 3501}) {
-    for (const std::int64_t ticks : {0, 81, 82, -81, -82, -165, 1000}) {
+    for (const std::int64_t ticks : {0, 80, 82, -80, -82, -166, 1000}) {
       Job job = roller_job();
       job.scanner.bidirectional_offset_ticks = ticks;
       const LinePlan line = planned(job, pixels, 1).line;
@@ -240,9 +250,9 @@ TEST(MakePlan, MirrorsTheReverseWindowAndDelaysIt) {
 
 TEST(MakePlan, TakesOffsetsUpToTheEndsOfTheLine) {
   Job job = roller_job();  // 3909 slots, 3500 pixels: windows from 204 and 205
-  job.scanner.bidirectional_offset_ticks = 204 * 82 + 81;
+  job.scanner.bidirectional_offset_ticks = 204 * 82 + 80;
   EXPECT_EQ(planned(job, 3500, 1).line.reverse_first_slot, 409);
-  job.scanner.bidirectional_offset_ticks = -(205 * 82 + 81);
+  job.scanner.bidirectional_offset_ticks = -(205 * 82 + 80);
   EXPECT_EQ(planned(job, 3500, 1).line.reverse_first_slot, 0);
 }
 
@@ -267,6 +277,37 @@ TEST(MakePlan, TakesGivenLinesAndCircumferenceAsTheyAre) {
   EXPECT_EQ(plan.rotary.lines_per_revolution, 27'500);
   EXPECT_EQ(plan.rotary.surface_speed_mm_s, plan.line.rate_hz * ratio(8, 1000));
   EXPECT_TRUE(plan.warnings.empty()) << plan.warnings.front();
+}
+
+TEST(MakePlan, WarnsOfAxesThatCannotBeSpunUpForWantOfALimit) {
+  Job job = roller_job();
+  job.rotary.limits.max_acceleration = 1000;
+  EXPECT_TRUE(warned(planned(job, 3500, 1),
+                     "rotary.max_speed_deg_s, max_jerk_deg_s3: missing, so [rotary] is not spun up and down"));
+  job.rotary.limits = {100, {}, {}};
+  EXPECT_FALSE(warned(planned(job, 3500, 1), "missing")) << "a speed alone is checked against that of marking";
+  job.mode = Mode::helical;
+  job.carriage = {64, 2, 20, 8, 2'000'000, {}};
+  job.rotary.max_ab_hz = 40'000'000;
+  job.rotary.limits = {36'000, 36'000, 360'000};
+  const Result<Plan> made = make_plan(job, 3500, 2);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(warned(made.value(),
+                     "carriage.max_speed_mm_s, max_acceleration_mm_s2, max_jerk_mm_s3: missing, so [carriage] is "
+                     "not spun up and down and must move at its marking speed from tick 0, while the other axis "
+                     "starts from rest"));
+}
+
+TEST(MakePlan, WarnsOfFiguresOfTermsThatAreOff) {
+  Job job = roller_job();
+  job.places["twin.servo.bandwidth_hz"] = {7, 1};
+  job.places["twin.run_out.enabled"] = {8, 1};
+  const Plan plan = planned(job, 3500, 1);
+  EXPECT_TRUE(
+      warned(plan, "twin.servo.bandwidth_hz has no effect: twin.servo.enabled is not true, so the term is off"));
+  EXPECT_FALSE(warned(plan, "run_out"));
+  job.twin.servo.enabled = true;
+  EXPECT_FALSE(warned(planned(job, 3500, 1), "has no effect"));
 }
 
 TEST(MakePlan, WarnsOfWhatIsAllowedButWorthKnowing) {
@@ -310,12 +351,12 @@ TEST(MakePlan, StaysInsideEveryBoundForRandomJobs) {
     Job job = roller_job();
     job.laser.pulse_divider = random.count(1, 200);
     job.fpga.counter_bits = static_cast<int>(random.between(8, 64));
-    job.fpga.max_prescaler = random.between(1, std::numeric_limits<std::uint64_t>::max());
+    job.fpga.max_prescaler = random.between(1, 4'294'967'295);
     job.fpga.fractional = random.chance(3);
     job.scanner.slots_per_microvector = random.count(1, 50);
     job.rotary.interpolation_bits = static_cast<int>(random.between(0, 16));
     job.rotary.max_ab_hz = random.count(10'000, 4'000'000);
-    job.scanner.bidirectional_offset_ticks = random.count(0, 40'000) - 20'000;
+    job.scanner.bidirectional_offset_ticks = (random.count(0, 20'000) - 10'000) * job.fpga.clock_multiplier;
     const Result<Plan> result = make_plan(job, random.count(1, 5000), random.count(1, 10'000));
     if (!result) {
       EXPECT_EQ(result.error().code, ErrorCode::out_of_range) << result.error().message;
