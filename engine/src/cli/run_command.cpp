@@ -28,6 +28,7 @@ struct Options {
   std::string program;
   std::string device;
   std::string journal;
+  std::string record;
   std::string uncertain = "skip";
   session::RunOptions run;
 };
@@ -186,7 +187,7 @@ Result<int> run(const Options& options, const Command& command) {
                                                     .lines = plan.job.revolutions * per_revolution,
                                                     .lines_per_revolution = per_revolution}));
   GRAVURE_CHECK(session::check_options(journal, options.run.resume));
-  GRAVURE_TRY(const OpenDevice device, open_device(options.device));
+  GRAVURE_TRY(const OpenDevice device, open_device(options.device, options.record));
   if (options.device.rfind("emulated:", 0) == 0) {  // for `gravure exposure`
     GRAVURE_CHECK(emulator::note_program(device.link->identity().place, std::filesystem::absolute(options.program)));
   }
@@ -194,6 +195,11 @@ Result<int> run(const Options& options, const Command& command) {
   {
     RunProgress progress;
     GRAVURE_TRY(report, session::run_program(*program, *device.link, journal, options.run, progress, cancel));
+  }
+  if (device.recording != nullptr) {
+    if (const auto written = device.recording->written(); !written) {
+      warn(written.error().message);
+    }
   }
   const DeviceIdentity& identity = device.link->identity();
   if (report->error) {
@@ -213,6 +219,7 @@ void add_run(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "run", "Run a program on a board, or go on with it");
   const auto options = std::make_shared<Options>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
+  verb->add_option("--record", options->record, "File to write what goes over the link into, for --device replay:FILE");
   verb->add_option("--device", options->device, std::string("The board: ") + kDeviceNames)->required();
   session::ResumeOptions& resume = options->run.resume;
   CLI::Option* going_on =

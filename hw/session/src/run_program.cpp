@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <random>
+#include <array>
+#include <cstddef>
+#include <cstring>
 #include <thread>
 
+#include "gravure/core/crc32c.hpp"
 #include "gravure/fpga/register_map.hpp"
 #include "gravure/session/run.hpp"
 #include "gravure/twin/exposure.hpp"
@@ -85,10 +88,10 @@ class Run {
   }
 
   Result<void> find_beginning() {
-    GRAVURE_TRY(const std::uint32_t mark, link_.read_register(fpga::kScheduleIncrementRegister.address));
+    GRAVURE_TRY(mark_, link_.read_register(fpga::kScheduleIncrementRegister.address));
     BoardMemory memory{.serial = link_.identity().serial,
                        .power_up = status_.power_up,
-                       .mark = mark,
+                       .mark = mark_,
                        .executed_lines = status_.executed_lines,
                        .closed_slot = {}};
     if (status_.partial_line) {
@@ -176,6 +179,17 @@ class Run {
     return {};
   }
 
+  /// Of the next attempt: another than the board holds. Made of nothing but what the board says, so that what was
+  /// recorded of a run plays back.
+  std::uint32_t next_mark() {
+    std::array<std::byte, sizeof(mark_) + sizeof(status_.power_up)> seen{};
+    std::memcpy(seen.data(), &mark_, sizeof(mark_));
+    std::memcpy(seen.data() + sizeof(mark_), &status_.power_up, sizeof(status_.power_up));
+    const std::uint32_t made = crc32c_continue(kCrc32cStart, seen) | 1U;
+    mark_ = made == mark_ ? made + 2 : made;
+    return mark_;
+  }
+
   Result<PartSettings> settings_for(const BoardRun& part, const Place& place) {
     report_.offset = resume_offset(plan_, part, place.line);
     PartSettings settings;
@@ -187,7 +201,7 @@ class Run {
                        .backward_later_ticks = plan_.line.offset_remainder_ticks,
                        .lines_before = static_cast<std::uint64_t>(report_.offset.lines_before),
                        .silence_seeds = static_cast<std::uint64_t>(plan_.clock.seed_hz / kSilenceParts),
-                       .mark = std::random_device{}() | 1U};
+                       .mark = next_mark()};
     settings.timing.stop_at_end = plan_.mode == Mode::flat;
     const std::int64_t per_revolution = plan_.rotary.lines_per_revolution;
     const DeviceSetup setup = device_setup(plan_, place.line / per_revolution, place.line % per_revolution);
@@ -236,6 +250,7 @@ class Run {
   const CancelToken& cancel_;
   const Plan& plan_;
   BoardStatus status_;
+  std::uint32_t mark_ = 0;  ///< that the board holds
   RunReport report_;
 };
 
