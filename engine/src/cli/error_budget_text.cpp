@@ -24,6 +24,10 @@ std::string error_budget_text(const ErrorBudget& budget) {
   std::string text = fmt::format("\n{:>16}  {:>12}\n", "error budget", "at most um");
   for (const ErrorTerm term : kAllErrorTerms) {
     const std::optional<double>& um = budget.budget_um[static_cast<std::size_t>(term)];
+    if (!budget.enabled[static_cast<std::size_t>(term)]) {
+      text += fmt::format("{:>16}  {:>12}\n", term_name(term), "off");
+      continue;
+    }
     text += um ? fmt::format("{:>16}  {:>12.6g}\n", term_name(term), *um)
                : fmt::format("{:>16}  {:>12}\n", term_name(term), "unknown");
   }
@@ -44,7 +48,11 @@ std::string error_budget_text(const ErrorBudget& budget) {
 
 Json error_budget_json(const ErrorBudget& budget) {
   Json terms = Json::object();
+  Json off = Json::array();
   for (const ErrorTerm term : kAllErrorTerms) {
+    if (!budget.enabled[static_cast<std::size_t>(term)]) {
+      off.push_back(std::string(term_name(term)));
+    }
     terms[std::string(term_name(term))] = number(budget.budget_um[static_cast<std::size_t>(term)]);
   }
   return {
@@ -52,6 +60,7 @@ Json error_budget_json(const ErrorBudget& budget) {
       {"rms", budget.rms_um},
       {"worst", {{"revolution", budget.worst.revolution}, {"line", budget.worst.line}, {"slot", budget.worst.slot}}},
       {"budget", terms},
+      {"off", off},
       {"simulated_max", budget.simulated_max_um},
       {"defocus_max", number(budget.defocus_max_um)},
       {"simulated_pulses", budget.simulated_pulses},

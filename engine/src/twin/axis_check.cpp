@@ -55,18 +55,21 @@ Result<AxisCheck> AxisCheck::make(const Plan& plan, const Demand& demand) {
                      " and fraction_den = " + std::to_string(ab.fraction_den) + " (1 or more): compile it again"};
   }
   const Rational edges = demand.edges_per_revolution / plan.rotary.lines_per_revolution;
-  constexpr std::int64_t kMost = std::int64_t{1} << 62;
-  if (edges <= 0 || numerator_of(edges) > kMost || denominator_of(edges) > kMost) {
+  if (edges <= 0) {
     return Error{ErrorCode::out_of_range,
-                 std::string(demand.name) + ": " + to_string(edges) + " A-B edges a line are beyond 62-bit integers"};
+                 std::string(demand.name) + ": " + to_string(edges) + " A-B edges a line: must be above 0"};
   }
   AxisCheck check;
   check.name_ = demand.name;
   check.lines_per_run_ = run_with(plan, 0).revolutions * plan.rotary.lines_per_revolution;
   check.to_and_fro_ = demand.to_and_fro;
   check.line_ticks_ = plan.line.ticks;
-  check.edges_num_ = static_cast<std::int64_t>(numerator_of(edges));
-  check.edges_den_ = static_cast<std::int64_t>(denominator_of(edges));
+  check.edges_per_line_ = edges;
+  if (constexpr std::int64_t kMost = std::int64_t{1} << 62;
+      numerator_of(edges) <= kMost && denominator_of(edges) <= kMost) {
+    check.edges_num_ = static_cast<std::int64_t>(numerator_of(edges));
+    check.edges_den_ = static_cast<std::int64_t>(denominator_of(edges));
+  }
   check.counter_shift_ = static_cast<unsigned>(ab.counter_bits - 2);
   check.prescaler_ = ab.prescaler;
   check.increment_ = ab.increment;
@@ -124,10 +127,14 @@ std::uint64_t AxisCheck::register_edges(std::int64_t tick) const noexcept {
 
 Rational AxisCheck::exact_error_at_end(std::int64_t ordinal, std::int64_t edges) const {
   const std::int64_t lines = ordinal % lines_per_run_ + 1;
-  return Rational(Integer(edges) * sign_of(ordinal)) - ratio(Integer(lines) * edges_num_, edges_den_);
+  return Rational(Integer(edges) * sign_of(ordinal)) - Rational(lines) * edges_per_line_;
 }
 
 double AxisCheck::error_edges(std::int64_t ordinal, const AxisState& axis) const {
+  if (edges_num_ == 0) {  // pitches of very many digits
+    return to_double(
+        Rational(Rational(axis.edges * sign_of(ordinal)) - Rational(ordinal % lines_per_run_) * edges_per_line_));
+  }
   const Wide ideal = static_cast<Wide>(ordinal % lines_per_run_) * edges_num_;
   const Wide whole = ideal / edges_den_;
   const Wide rest = ideal % edges_den_;

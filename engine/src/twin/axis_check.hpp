@@ -13,8 +13,7 @@ namespace gravure {
 /// in backward passes as far the other way. Lines are counted over the whole job.
 class AxisCheck {
  public:
-  /// The axis across the lines. Fails with out_of_range when the edges of a line, as a ratio in lowest terms, are
-  /// beyond 62-bit integers.
+  /// The axis across the lines. Fails with out_of_range where registers or geometry are none.
   static Result<AxisCheck> make(const Plan& plan);
   /// The carriage of a helical plan, likewise.
   static Result<AxisCheck> make_carriage(const Plan& plan);
@@ -62,7 +61,8 @@ class AxisCheck {
   std::int64_t lines_per_run_ = 1;
   bool to_and_fro_ = false;  ///< every other run goes backward
   std::int64_t line_ticks_ = 0;
-  std::int64_t edges_num_ = 0;  ///< ideal edges a line = num / den
+  Rational edges_per_line_ = 0;  ///< ideal
+  std::int64_t edges_num_ = 0;   ///< the same as num / den, where both are below 2^62; else 0
   std::int64_t edges_den_ = 1;
   unsigned counter_shift_ = 0;  ///< n - 2
   std::uint64_t prescaler_ = 1;

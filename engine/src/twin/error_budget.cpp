@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "error_model.hpp"
+#include "figure.hpp"
 #include "gravure/twin/exposure.hpp"
 
 namespace gravure {
@@ -62,6 +63,7 @@ Result<void> fill_budget(const Plan& plan, const ErrorBudgetRequest& request, Er
   TwinSettings twin = request.twin;
   for (const ErrorTerm term : kAllErrorTerms) {
     std::optional<double>& value = budget.budget_um[static_cast<std::size_t>(term)];
+    budget.enabled[static_cast<std::size_t>(term)] = switch_of(twin, term);
     if (!switch_of(twin, term)) {
       value = 0;
       continue;
@@ -86,6 +88,13 @@ void say_notes(const Plan& plan, const ErrorBudgetRequest& request, ErrorBudget&
                        "cross_scan, lag and defocus are not in it"
                      : "error budget: the scanner is not described, so galvo_resolution, microvectors, cross_scan, lag "
                        "and defocus are not in it: give scanner.field_mm");
+  }
+  if (std::none_of(budget.enabled.begin(), budget.enabled.end(), [](bool enabled) { return enabled; })) {
+    budget.notes.emplace_back("error budget: every term is switched off in [twin], so nothing is judged");
+  }
+  if (request.trajectory != nullptr && request.trajectory->field_grid_error_um > 0) {
+    budget.notes.push_back("error budget: the field grid between its nodes is not in it, estimated at most " +
+                           figure(request.trajectory->field_grid_error_um) + " um; more nodes make that less");
   }
   if (request.twin.run_out.enabled && plan.mode == Mode::flat) {
     budget.notes.emplace_back("error budget: nothing turns in a flat job, twin.run_out adds nothing");

@@ -33,6 +33,28 @@ bool is_set(std::span<const std::byte> bits, std::int64_t index) noexcept {
   return (std::to_integer<unsigned>(bits[static_cast<std::size_t>(index / 8)]) >> (7U - (index & 7))) & 1U;
 }
 
+/// With a lag that is not made up for, the first pulses of a helical line come while U still goes from one fraction of
+/// a column to the next, by 10 x^3 - 15 x^4 + 6 x^5 of it at most, x the share of the turn that is left.
+double shift_left_um(const scan::LineTrajectory& trajectory, double column_um) {
+  const scan::LinePath& path = trajectory.path;
+  const scan::LineTiming& timing = path.timing();
+  const double lag_slots = to_double(path.geometry().machine.head.lag_us) * 1e-6 / timing.slot_s() -
+                           static_cast<double>(trajectory.lag_ticks) / static_cast<double>(timing.ticks_per_slot);
+  double most_um = 0;
+  for (const scan::Direction here : {scan::Direction::forward, scan::Direction::reverse}) {
+    const bool turned = timing.bidirectional && here == scan::Direction::forward;
+    const scan::Direction before = turned ? scan::Direction::reverse : scan::Direction::forward;
+    const double begin = path.marking(here).begin;
+    const double turn = static_cast<double>(timing.slots) - path.marking(before).end + begin;
+    // Between set-points the mirrors go straight: the one before counts.
+    const double first = timing.pulse_at(here, timing.first_slot(here)) - lag_slots -
+                         (lag_slots > 0 ? static_cast<double>(timing.slots_per_microvector) : 0);
+    const double left = std::clamp((begin - first) / turn, 0.0, 1.0);
+    most_um = std::max(most_um, column_um * std::min(1.0, 10 * left * left * left));
+  }
+  return most_um;
+}
+
 AxisTerms axis_terms(const TwinSettings& twin) {
   return {twin.drift, twin.ab_step, twin.servo.enabled, to_double(twin.servo.bandwidth_hz),
           to_double(twin.servo.damping)};
@@ -84,6 +106,9 @@ Result<ErrorModel> ErrorModel::make(const Plan& plan, const scan::LineTrajectory
       model.scanner_back_ = scanner_errors(*back, terms);
     }
     model.count_um_ = trajectory->resolution_mm * 1000;
+    if (plan.carriage && twin.lag) {
+      model.late_shift_um_ = shift_left_um(*trajectory, to_double(plan.line.pixel_pitch_um));
+    }
     model.set_rounding_range();
   }
   model.radius_um_ = to_double(plan.rotary.circumference_um) / (2 * kPi);
@@ -307,7 +332,7 @@ ErrorModel::Bound ErrorModel::line_bound(std::int64_t revolution, std::int64_t l
   // Columns grow apart from column 0, wherever in the image the line lies.
   const double farthest_um = static_cast<double>(image_columns(plan_) - 1) * column_um_;
   Interval along = errors.along + between(0, -growth_ * farthest_um) + product(hits.rise_um, errors.slope_along_range) +
-                   rounding_range_;
+                   rounding_range_ + Interval{-late_shift_um_, late_shift_um_};
   if (carriage_) {
     along = along + moving(*carriage_, here.carriage_drift_um);
   }

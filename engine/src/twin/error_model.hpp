@@ -51,6 +51,8 @@ class ErrorModel {
     double defocus_um = 0;
   };
   Bound line_bound(std::int64_t revolution, std::int64_t line) const;
+  /// Of that, what the simulation leaves out: helical lines whose lag is not compensated.
+  double late_shift_um() const noexcept { return late_shift_um_; }
   /// What no pulse of the job exceeds, and where the bound is largest. Beyond run-out, which is the same in every
   /// revolution, all that changes from line to line grows steadily: the first and the last lines of the first and the
   /// last two revolutions (one for each direction) bound the others.
@@ -86,7 +88,8 @@ class ErrorModel {
   ScannerErrors scanner_;
   std::optional<ScannerErrors> scanner_back_;  ///< flat: of the passes in which the stage comes back
   double count_um_ = 0;                        ///< of the scanner
-  Interval rounding_range_;                    ///< helical: of the orders to U, on all lines
+  double late_shift_um_ = 0;  ///< helical: most that U is away from its line's fraction of a column at a late pulse
+  Interval rounding_range_;   ///< helical: of the orders to U, on all lines
   std::optional<RunOut> run_out_;
   double growth_ = 0;  ///< of every length, by temperature
   double radius_um_ = 0;

@@ -173,9 +173,10 @@ void say_violations(const Plan& plan, const AxisChecks& axes, const Tally& tally
   const Rational limit_lines = plan.ab.seam_limit_um / plan.rotary.line_pitch_um;
   const std::int64_t drifting = drifting_revolutions(plan, plan.job.revolutions - 1) * plan.rotary.lines_per_revolution;
   if (abs(Rational(axis.drift_per_line() * drifting)) > limit_lines) {
-    say("seam error of " + figure(report.seam_max_um) +
-        " um at the end of the job exceeds limits.seam_um = " + to_decimal_string(plan.ab.seam_limit_um) +
-        ": set fpga.fractional, raise scanner.max_extra_slots, or see `gravure suggest`");
+    say("seam error of " + figure(report.seam_max_um) + " um at the end of the job exceeds limits.seam_um = " +
+        to_decimal_string(plan.ab.seam_limit_um) + ": set fpga.fractional" +
+        (plan.mode == Mode::rotary ? ", raise scanner.max_extra_slots, or see `gravure suggest`"
+                                   : " or raise scanner.max_extra_slots"));
   }
   if (axes.carriage) {
     judge_carriage(plan, *axes.carriage, tally.carriage, report);

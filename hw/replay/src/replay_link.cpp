@@ -1,9 +1,22 @@
 #include "gravure/replay/replay_link.hpp"
 
+#include <utility>
+
 #include "gravure/core/crc32c.hpp"
 #include "gravure/core/file_output.hpp"
 
 namespace gravure::replay {
+
+/// Statuses come when the board has something to say, whatever the host is at: what was recorded before the next
+/// request is there by now.
+void ReplayLink::pass_statuses() {
+  for (; !at_end() && session_.exchanges[next_].request == Request::status && !session_.exchanges[next_].error;
+       ++next_) {
+    if (session_.exchanges[next_].status) {
+      heard_ = session_.exchanges[next_].status;
+    }
+  }
+}
 
 Result<std::unique_ptr<ReplayLink>> ReplayLink::open(const std::string& path) {
   GRAVURE_TRY(const std::string text, read_file(path, kMostSessionBytes));
@@ -16,6 +29,7 @@ Result<const Exchange*> ReplayLink::answer(const Exchange& asked) {
     return *refused_;
   }
   const std::string says = "the host says \"" + request_text(asked) + "\", ";
+  pass_statuses();
   if (at_end()) {
     refused_ = Error{ErrorCode::device, name_ + ": " + says + "but the recorded session ends before"};
     return *refused_;
@@ -61,8 +75,20 @@ Result<void> ReplayLink::abandon() {
 }
 
 Result<std::optional<BoardStatus>> ReplayLink::next_status(Milliseconds /*patience*/) {
-  GRAVURE_TRY(const Exchange* recorded, answer({.request = Request::status}));
-  return recorded->status;
+  if (refused_) {
+    return *refused_;
+  }
+  if (heard_) {
+    return std::exchange(heard_, std::nullopt);
+  }
+  if (at_end() || session_.exchanges[next_].request != Request::status) {
+    return std::optional<BoardStatus>();
+  }
+  const Exchange& recorded = session_.exchanges[next_++];
+  if (recorded.error) {
+    return *recorded.error;
+  }
+  return recorded.status;
 }
 
 }  // namespace gravure::replay

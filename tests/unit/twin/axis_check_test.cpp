@@ -60,6 +60,22 @@ TEST(AxisCheck, ErrorIsDeviceMinusIdeal) {
   });
 }
 
+TEST(AxisCheck, TakesPitchesOfVeryManyDigits) {
+  Job job = small_job(50);
+  job.mode = Mode::flat;
+  job.fpga.fractional = false;
+  job.stage = {50, 8, ratio(Integer(5'618'393'465'650'583), Integer(1'000'000'000'000'000)), 9, 41'000'000, {}};
+  const Result<Plan> plan = make_plan(job, 40, 1);
+  ASSERT_TRUE(plan) << plan.error().message;
+  const Result<AxisCheck> made = AxisCheck::make(plan.value());
+  ASSERT_TRUE(made) << made.error().message;
+  const Rational ideal = wanted_edges_at_line(plan.value(), 49);
+  ASSERT_GT(denominator_of(ideal) + numerator_of(ideal), Integer(1) << 62U);
+  const auto near = static_cast<std::int64_t>(floor_of(ideal)) + 3;
+  EXPECT_NEAR(made.value().error_edges(49, {.edges = near}), to_double(Rational(Rational(Integer(near)) - ideal)),
+              1e-12);
+}
+
 TEST(AxisCheck, DriftIsThatOfThePlan) {
   for_random_plans([](const Plan& plan, Dice&) {
     const AxisCheck check = AxisCheck::make(plan).value();
@@ -121,7 +137,7 @@ TEST(AxisCheck, RefusesRegistersAndRatiosThatAreNone) {
   EXPECT_TRUE(refused([](Plan& plan) { plan.ab.counter_bits = 65; }));
   EXPECT_TRUE(refused([](Plan& plan) { plan.ab.counter_bits = 2; }));
   EXPECT_TRUE(refused([](Plan& plan) { plan.rotary.edges_per_revolution = 0; }));
-  EXPECT_TRUE(refused([](Plan& plan) { plan.rotary.edges_per_revolution = ratio(1, Integer(1) << 80U); }));
+  EXPECT_TRUE(refused([](Plan& plan) { plan.rotary.edges_per_revolution = ratio(-1, Integer(1) << 80U); }));
   EXPECT_FALSE(refused([](Plan&) {}));
 }
 

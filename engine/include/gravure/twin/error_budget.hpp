@@ -59,6 +59,7 @@ struct ErrorBudget {
   /// of the geometry), none where it cannot be known. For defocus the distance of the surface from focus by the
   /// geometry of the line: no part of max_um.
   std::array<std::optional<double>, kErrorTerms> budget_um;
+  std::array<bool, kErrorTerms> enabled = {};  ///< by ErrorTerm: was it asked for?
   std::vector<std::string> notes;
 };
 

@@ -9,7 +9,8 @@
 namespace gravure::replay {
 
 /// Answers a host as a board once did. A host that says anything else gets a device error with the line of the file,
-/// and nothing more from then on. Waits for nothing.
+/// and nothing more from then on. How often a host asked for a status is its own affair: it gets those that had come by
+/// then, none when it asks more often. Waits for nothing.
 class ReplayLink final : public DeviceLink {
  public:
   ReplayLink(Session session, std::string name) : session_(std::move(session)), name_(std::move(name)) {}
@@ -30,10 +31,12 @@ class ReplayLink final : public DeviceLink {
  private:
   /// The next exchange, where the request is the same; its error, where it has one.
   Result<const Exchange*> answer(const Exchange& asked);
+  void pass_statuses();
 
   Session session_;
   std::string name_;
   std::size_t next_ = 0;
+  std::optional<BoardStatus> heard_;  ///< the newest that came before what the host said last
   std::optional<Error> refused_;
 };
 
