@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "fake_board.hpp"
+#include "gravure/protocol/start_sequence.hpp"
 #include "gravure/replay/recording_link.hpp"
 #include "gravure/replay/replay_link.hpp"
 
@@ -135,6 +136,27 @@ TEST_F(Replay, AHostThatAsksForStatusesMoreOrLessOftenHearsTheNewest) {
   EXPECT_TRUE(say(eager, others[1])) << "with a status not asked for";
   EXPECT_EQ(eager.next_status(0ms).value()->level_bytes, 77U);
   EXPECT_FALSE(eager.next_status(0ms).value());
+}
+
+TEST_F(Replay, TheWriteThatKeepsABoardAwakeMayComeAtAnyTime) {
+  const std::string alive = "write 0x3b = 0x00000000 -> done\n";
+  auto session =
+      parse_session(head_text({}) + "read 0x01 -> 0x00000003\n" + alive + alive + "read 0x02 -> 0x00000004\n", "s");
+  ASSERT_TRUE(session) << session.error().message;
+  const auto keep_alive = [](DeviceLink& link) {
+    return bool(link.write_register(protocol::kKeepAlive.address, protocol::kKeepAlive.value));
+  };
+  ReplayLink slow(session.value(), "s.txt");
+  EXPECT_TRUE(keep_alive(slow));
+  EXPECT_TRUE(slow.read_register(1));
+  EXPECT_TRUE(keep_alive(slow));
+  EXPECT_TRUE(slow.read_register(2)) << "one of two was said";
+  EXPECT_TRUE(keep_alive(slow));
+  ReplayLink fast(session.value(), "s.txt");
+  EXPECT_TRUE(fast.read_register(1));
+  EXPECT_TRUE(fast.read_register(2)) << "none was said";
+  ReplayLink wrong(session.value(), "s.txt");
+  EXPECT_FALSE(wrong.write_register(protocol::kKeepAlive.address, 1));
 }
 
 TEST_F(Replay, AnotherStreamOfTheSameLengthIsSeen) {

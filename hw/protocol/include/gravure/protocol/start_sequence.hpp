@@ -6,6 +6,7 @@
 
 #include "gravure/core/error.hpp"
 #include "gravure/core/line_device.hpp"
+#include "gravure/fpga/register_map.hpp"
 
 namespace gravure::protocol {
 
@@ -15,6 +16,9 @@ struct RegisterWrite {
   std::uint32_t value = 0;
   friend bool operator==(const RegisterWrite&, const RegisterWrite&) = default;
 };
+
+/// Changes nothing: said while there is nothing to send, so that the board's watchdog does not take the host for dead.
+inline constexpr RegisterWrite kKeepAlive{fpga::kLowLevelRegister.address, 0};
 
 /// Bits of the control register.
 inline constexpr std::uint32_t kControlRun = 1;
