@@ -4,6 +4,8 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "gravure/emulator/fired_lines.hpp"
 #include "gravure/formats/grv.hpp"
@@ -95,7 +97,9 @@ Result<int> run(Options options, const Command& command) {
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
   GRAVURE_TRY(ExposureCount count, ExposureCount::make(header, options.revolution, options.layer));
-  GRAVURE_CHECK(refuse_overwrite(options.output, {options.program}));
+  std::vector<std::string> inputs = emulator::state_files(options.folder);
+  inputs.push_back(options.program);
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs));
   static_cast<void>(cancel_token());  // before there is a temporary file: from here on Ctrl-C takes it away again
   GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(options.output, page_of(header)));
   GRAVURE_TRY(const Times times, render(options, count, writer, command.memory_bytes()));

@@ -61,8 +61,7 @@ std::string locate_source(const SourceImage& source, const ProgramHeader& header
 
 Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
-    std::error_code ignored;
-    if (fs::equivalent(output, input, ignored)) {
+    if (same_file(output, input)) {
       return Error{ErrorCode::bad_argument,
                    fmt::format("output {} is the input {}: give another file name", output, input)};
     }

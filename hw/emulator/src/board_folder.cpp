@@ -11,19 +11,13 @@
 #include <filesystem>
 #include <system_error>
 
+#include "gravure/core/file_output.hpp"
+
 namespace gravure::emulator {
 namespace {
 
 Error io_error(const std::string& name, const std::string& what) {
   return {ErrorCode::io, name + ": " + what + ": " + std::strerror(errno)};
-}
-
-Result<OpenFile> open_file(const std::string& name, int flags) {
-  OpenFile file(::open(name.c_str(), flags | O_CLOEXEC, 0666));
-  if (file.number() < 0) {
-    return io_error(name, "cannot be opened");
-  }
-  return file;
 }
 
 /// In one write(2), unless the system breaks it up.
@@ -44,6 +38,22 @@ OpenFile::~OpenFile() {
   if (number_ >= 0) {
     ::close(number_);
   }
+}
+
+Result<OpenFile> open_regular(const std::string& name, int flags) {
+  OpenFile file(::open(name.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0666));
+  if (file.number() < 0) {
+    return open_error(name, errno);
+  }
+  struct stat about {};
+  if (::fstat(file.number(), &about) != 0) {
+    return io_error(name, "cannot be looked at");
+  }
+  if (!S_ISREG(about.st_mode)) {
+    return Error{ErrorCode::bad_file,
+                 name + ": is not a regular file; the state of this board is damaged: give another folder"};
+  }
+  return file;
 }
 
 RecordReader::Source source_of(const OpenFile& file, const std::string& name) {
@@ -68,7 +78,10 @@ Result<BoardFolder> BoardFolder::open(const std::string& path) {
   std::filesystem::create_directories(path, failed);
   BoardFolder folder;
   folder.path_ = path;
-  GRAVURE_TRY(folder.lock_, open_file(path, O_RDONLY | O_DIRECTORY));
+  folder.lock_ = OpenFile(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder.lock_.number() < 0) {
+    return io_error(path, "cannot be opened");
+  }
   if (::flock(folder.lock_.number(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) {
       return io_error(path, "cannot be locked");
@@ -85,13 +98,13 @@ Result<BoardFolder> BoardFolder::open(const std::string& path) {
     return Error{ErrorCode::bad_file, host + " is missing, " + kFiredFile +
                                           " is there: the state of this board is damaged; give another folder"};
   }
-  GRAVURE_TRY(folder.fired_, open_file(fired, O_RDWR | O_CREAT | (folder.is_new_ ? O_TRUNC : 0)));
+  GRAVURE_TRY(folder.fired_, open_regular(fired, O_RDWR | O_CREAT | (folder.is_new_ ? O_TRUNC : 0)));
   if (folder.is_new_) {
     append_file_head(folder.buffer_, kFiredMagic);
     GRAVURE_CHECK(write_all(folder.fired_, folder.buffer_, fired));
     folder.fired_end_ = folder.buffer_.size();
   } else {
-    GRAVURE_TRY(folder.host_, open_file(host, O_RDWR));
+    GRAVURE_TRY(folder.host_, open_regular(host, O_RDWR));
   }
   return folder;
 }
@@ -161,7 +174,7 @@ Result<void> BoardFolder::begin(std::uint64_t power_up, const std::string& optio
   for (const Record& event : events) {
     append_record(buffer_, event);
   }
-  GRAVURE_TRY(OpenFile file, open_file(fresh, O_RDWR | O_CREAT | O_TRUNC));
+  GRAVURE_TRY(OpenFile file, open_regular(fresh, O_RDWR | O_CREAT | O_TRUNC));
   GRAVURE_CHECK(write_all(file, buffer_, fresh));
   if (::rename(fresh.c_str(), name.c_str()) != 0) {
     return io_error(fresh, "cannot be renamed to " + name);

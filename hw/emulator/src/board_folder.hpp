@@ -50,6 +50,9 @@ class OpenFile {
   int number_ = -1;
 };
 
+/// Never waits for the other end of a pipe. bad_file: it cannot be opened, or is no regular file.
+Result<OpenFile> open_regular(const std::string& name, int flags);
+
 /// Reads from where `file` stands, which must outlive the source.
 RecordReader::Source source_of(const OpenFile& file, const std::string& name);
 

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -19,10 +18,7 @@ constexpr char kProgramFile[] = "program";
 
 Result<void> read_fired_lines(const std::string& folder, const std::function<Result<void>(const FiredLine&)>& take) {
   const std::string name = folder + "/" + kFiredFile;
-  const OpenFile file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.number() < 0) {
-    return open_error(name, errno);
-  }
+  GRAVURE_TRY(const OpenFile file, open_regular(name, O_RDONLY));
   GRAVURE_TRY(RecordReader reader, RecordReader::open(source_of(file, name), name, kFiredMagic));
   for (;;) {
     GRAVURE_TRY(const std::optional<Record> record, reader.next());
@@ -31,6 +27,14 @@ Result<void> read_fired_lines(const std::string& folder, const std::function<Res
     }
     GRAVURE_CHECK(take({.revolution = record->a, .line = record->b, .first_slot = record->c, .bits = record->payload}));
   }
+}
+
+std::vector<std::string> state_files(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const char* name : {kHostFile, kFiredFile, kProgramFile}) {
+    files.push_back(folder + "/" + name);
+  }
+  return files;
 }
 
 Result<void> note_program(const std::string& folder, const std::string& path) {

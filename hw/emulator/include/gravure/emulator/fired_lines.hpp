@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "gravure/core/error.hpp"
 
@@ -21,6 +22,9 @@ struct FiredLine {
 /// Gives every line that the board in a folder has fired, in order, also while it runs. bad_file where there is no such
 /// folder or a file is damaged, with its place; io; what `take` returns.
 Result<void> read_fired_lines(const std::string& folder, const std::function<Result<void>(const FiredLine&)>& take);
+
+/// What the board in a folder keeps there, whether it is there yet or not: nobody else may write these.
+std::vector<std::string> state_files(const std::string& folder);
 
 /// Notes which program the board in a folder runs, for whoever looks at what it fired; replaces what was noted before.
 /// io.
