@@ -110,11 +110,8 @@ Result<void> PartRun::fill() {
 /// A board goes on counting to first_tick from an earlier go, even while no slots run: lines must not be allowed to run
 /// while that count may come to its end. Once they are, the watchdog closes the gate of a host that does not say go.
 Result<void> PartRun::wait_out_old_count(Clock::time_point counted_from) {
-  const auto seconds = [this](std::uint64_t seeds) {
-    return std::chrono::duration<double>(static_cast<double>(seeds) / static_cast<double>(settings_.seed_hz));
-  };
-  const std::chrono::duration<double> end = seconds(settings_.sequence.first_tick) + milliseconds(2);
-  const std::chrono::duration<double> margin = 2 * seconds(settings_.timing.silence_seeds) + milliseconds(100);
+  const std::chrono::duration<double> end = seconds_of(settings_.sequence.first_tick) + milliseconds(2);
+  const std::chrono::duration<double> margin = 2 * seconds_of(settings_.timing.silence_seeds) + milliseconds(100);
   while (true) {
     const std::chrono::duration<double> passed = Clock::now() - counted_from;
     if (passed > end || passed + margin < end) {
@@ -135,7 +132,7 @@ Result<void> PartRun::start() {
   GRAVURE_CHECK(journal_.started(now.sent_limit));
   writer_ = std::make_unique<JournalWriter>(journal_, now, ahead, settings_.end_line);
   started_ = true;
-  last_moved_ = Clock::now();
+  last_moved_ = go_ = Clock::now();
   GRAVURE_CHECK(write(settings_.sequence.start));
   return check_refused(protocol::kStatusSettingRefused, "start");
 }
@@ -304,7 +301,8 @@ Result<void> PartRun::write(const std::vector<RegisterWrite>& writes) {
 
 // The end
 
-/// Waits until the board says that nothing runs any more: then its counts are exact.
+/// Waits until the board says that nothing runs any more: then its counts are exact. A message from before the gate was
+/// closed says that lines run, or that none has begun.
 Result<void> PartRun::settle() {
   const Clock::time_point until = Clock::now() + options_.stall / 5;
   while (Clock::now() < until) {
@@ -314,19 +312,56 @@ Result<void> PartRun::settle() {
       continue;
     }
     static_cast<void>(take_status(*status));
-    if (power_lost_ || out_of_reach_ || status->state != BoardState::running) {
+    const bool at_rest = status->state == BoardState::idle || status->state == BoardState::stopped;
+    if (power_lost_ || out_of_reach_ || (at_rest && newest_ == status->sequence)) {
       return {};
     }
   }
   return Error{ErrorCode::timeout, "the board does not say that its lines have stopped"};
 }
 
+std::chrono::duration<double> PartRun::seconds_of(std::uint64_t seeds) const {
+  return std::chrono::duration<double>(static_cast<double>(seeds) / static_cast<double>(settings_.seed_hz));
+}
+
+/// By the clock of the host, or of the board where that is further on: one that is emulated leaps.
+std::chrono::duration<double> PartRun::since_go() const {
+  const std::chrono::duration<double> passed = Clock::now() - go_;
+  return std::max(passed, seconds_of(tick_ / static_cast<std::uint64_t>(settings_.ticks_per_seed)));
+}
+
+/// The control register while the axes move and no lines run: they go on the way they went.
+std::uint32_t PartRun::axes_on() const {
+  const bool moving = started_ && settings_.stop_time.count() != 0;
+  const std::uint32_t way = settings_.sequence.start.front().value & protocol::kControlAxis0Backward;
+  return moving ? protocol::kControlAxis0 | protocol::kControlAxis1 | way : 0;
+}
+
+/// An axis that never moved has nothing to come down from. One in its ramp comes to its end first: a schedule down
+/// begins at the marking speed. Where the schedule of the start ends at rest, and is about to or does already, nothing
+/// is to be added to it.
 Result<void> PartRun::bring_to_rest() {
-  GRAVURE_CHECK(write(settings_.stop));
-  if (settings_.stop_time.count() == 0) {
-    return {};
+  if (axes_on() == 0) {
+    return write({{fpga::kControlRegister.address, 0}});
   }
-  const Clock::time_point until = Clock::now() + settings_.stop_time + settings_.stop_time / 2 + milliseconds(200);
+  constexpr milliseconds kLeastAhead{100};
+  const bool goes_down = all_executed() || since_go() + kLeastAhead > seconds_of(settings_.marking_end_seeds);
+  if (!settings_.sequence.ends_at_rest || !goes_down) {
+    while (!ran_ && executed_ == 0 && since_go() < seconds_of(settings_.ramp_seeds)) {
+      std::this_thread::sleep_for(kTick);
+    }
+    std::vector<RegisterWrite> stop = settings_.stop;
+    stop.front().value |= axes_on();
+    GRAVURE_CHECK(write(stop));
+    // The segments went through the register that holds the mark of this attempt.
+    GRAVURE_CHECK(write({{fpga::kScheduleIncrementRegister.address, settings_.timing.mark}}));
+  }
+  GRAVURE_CHECK(wait_for_rest());
+  return write({{fpga::kControlRegister.address, 0}});
+}
+
+Result<void> PartRun::wait_for_rest() {
+  const Clock::time_point until = Clock::now() + settings_.stop_time + settings_.stop_time / 2 + milliseconds(300);
   Clock::time_point ticked = Clock::now();
   std::uint64_t tick = tick_;
   while (Clock::now() < until && Clock::now() - ticked < milliseconds(300)) {
@@ -337,22 +372,22 @@ Result<void> PartRun::bring_to_rest() {
     }
     GRAVURE_TRY(const std::uint32_t word, link_.read_register(fpga::kStatusRegister.address));
     if ((word & protocol::kStatusScheduleBusy) == 0) {
-      break;
+      return {};
     }
     std::this_thread::sleep_for(milliseconds(5));
   }
-  return write({{fpga::kControlRegister.address, 0}});
+  return {};
 }
 
 /// The gate first of all. Whatever goes wrong here, the watchdog of the board closes it.
 void PartRun::close_gate() {
   const bool was_stopped = stopped_.has_value();
-  const std::uint32_t axes = settings_.stop_time.count() != 0 ? protocol::kControlAxis0 | protocol::kControlAxis1 : 0;
-  if (!write({{fpga::kControlRegister.address, axes}}) || (started_ && !was_stopped && !settle())) {
+  if (!write({{fpga::kControlRegister.address, axes_on()}}) || (started_ && !was_stopped && !settle())) {
     out_of_reach_ = true;
   }
 }
 
+/// What was fired is on disk before the axes are brought to rest, which takes its time.
 PartOutcome PartRun::conclude(Result<void> ran) {
   close_gate();
   if (writer_) {
@@ -373,17 +408,18 @@ PartOutcome PartRun::conclude(Result<void> ran) {
   }
   outcome.sent_limit = outcome.exact ? std::max(line, settings_.first.line) : settings_.first.line + sent_lines();
   outcome.counts = counts();
-  if (!out_of_reach_) {
-    static_cast<void>(bring_to_rest());
-  }
   if (!outcome.ran) {
     outcome.ran = describe(outcome.ran.error(), outcome);
   }
   const std::string why = outcome.ran ? "every line of this part was executed" : outcome.ran.error().message;
-  const Result<void> noted = journal_.ended(outcome.exact ? AttemptState::ended : AttemptState::lost, outcome.executed,
-                                            outcome.sent_limit, why);
+  const AttemptState known = outcome.exact ? AttemptState::ended : AttemptState::lost;
+  const Result<void> noted =
+      journal_.ended(started_ ? known : AttemptState::prepared, outcome.executed, outcome.sent_limit, why);
   if (!noted && (outcome.ran || outcome.ran.error().message.find(noted.error().message) == std::string::npos)) {
     outcome.ran = Error{noted.error().code, (outcome.ran ? std::string() : why + "\n") + noted.error().message};
+  }
+  if (!out_of_reach_) {
+    static_cast<void>(bring_to_rest());
   }
   return outcome;
 }

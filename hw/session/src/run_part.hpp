@@ -21,7 +21,11 @@ struct PartSettings {
   protocol::StartSequence sequence;
   std::vector<protocol::RegisterWrite> stop;
   std::chrono::nanoseconds stop_time{0};  ///< that the axes take to come to rest
+  /// Seed clocks from go: until both axes have their marking speed, and until they leave it again by themselves.
+  std::uint64_t ramp_seeds = 0;
+  std::uint64_t marking_end_seeds = 0;
   std::int64_t seed_hz = 0;
+  std::int64_t ticks_per_seed = 1;
   std::int64_t frame_bytes = 0;
   std::int64_t capacity_bytes = 0;
   std::int64_t reserve_bytes = 0;
@@ -66,7 +70,11 @@ class PartRun {
   Result<void> wait_out_old_count(Clock::time_point counted_from);
   void close_gate();
   Result<void> settle();
+  std::uint32_t axes_on() const;
+  std::chrono::duration<double> seconds_of(std::uint64_t seeds) const;
+  std::chrono::duration<double> since_go() const;
   Result<void> bring_to_rest();
+  Result<void> wait_for_rest();
   PartOutcome conclude(Result<void> ran);
   Error describe(const Error& cause, const PartOutcome& outcome) const;
   std::int64_t lines() const { return settings_.end_line - settings_.first.line; }
@@ -101,6 +109,7 @@ class PartRun {
   bool power_lost_ = false;
   std::optional<BoardStatus> stopped_;  ///< by a fault
   std::optional<std::uint32_t> closed_slot_;
+  Clock::time_point go_;  ///< when it was said
   Clock::time_point last_spoken_;
   Clock::time_point last_moved_;
   bool waits_for_board_ = false;

@@ -208,6 +208,12 @@ class Run {
     GRAVURE_TRY(settings.sequence, protocol::start_sequence(setup, settings.timing));
     settings.stop = protocol::stop_sequence(setup.spin_down, setup.carriage.spin_down);
     settings.stop_time = stop_time(setup.spin_down, setup.carriage.spin_down);
+    settings.ticks_per_seed = setup.clock_multiplier;
+    const std::uint64_t line_seeds = static_cast<std::uint64_t>(setup.slots_per_line) *
+                                     static_cast<std::uint64_t>(setup.ticks_per_slot / setup.clock_multiplier);
+    settings.ramp_seeds = settings.sequence.first_tick - settings.timing.lines_before * line_seeds;
+    settings.marking_end_seeds =
+        settings.sequence.first_tick + static_cast<std::uint64_t>(settings.end_line - place.line) * line_seeds;
     settings.frame_bytes = report_.demand.frame_bytes;
     settings.capacity_bytes = std::int64_t{status_.capacity_bytes};
     settings.reserve_bytes =
