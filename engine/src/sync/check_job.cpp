@@ -26,7 +26,7 @@ void check_clocks(const Job& job, Violations& violations) {
   violations.check_range("laser.max_pulse_on_demand_hz", job.laser.max_pulse_on_demand_hz, 1, kMostHz);
   violations.check_range("fpga.clock_multiplier", job.fpga.clock_multiplier, 1, kMostClockMultiplier);
   violations.check_range("fpga.counter_bits", job.fpga.counter_bits, kLeastCounterBits, kMostCounterBits);
-  violations.check_range("fpga.max_prescaler", job.fpga.max_prescaler, 1, kMostPrescaler);
+  violations.check_range("fpga.max_prescaler", job.fpga.max_prescaler, 1, std::numeric_limits<std::uint64_t>::max());
 }
 
 void check_scanner(const ScannerSettings& scanner, Violations& violations) {

@@ -39,28 +39,14 @@ bool window_fits(const LinePlan& line, std::int64_t slots) {
   return line.offset_slots >= -mirrored_first_slot(line, slots) && line.offset_slots <= forward_first_slot(line, slots);
 }
 
-void check_delay(const Job& job, const LinePlan& line, Violations& violations) {
-  const std::int64_t multiplier = job.fpga.clock_multiplier;
-  if (line.offset_remainder_ticks % multiplier != 0) {
-    violations.conflict(ErrorCode::bad_argument, "scanner.bidirectional_offset_ticks",
-                        std::to_string(job.scanner.bidirectional_offset_ticks),
-                        "leaves " + std::to_string(line.offset_remainder_ticks) +
-                            " ticks beside whole slots: the board delays by whole "
-                            "seed clocks of " +
-                            std::to_string(multiplier) +
-                            " ticks; make it a multiple of fpga.clock_multiplier = " + std::to_string(multiplier));
-  }
-}
-
 void check_window(const Job& job, const LinePlan& line, std::int64_t longest_line, std::int64_t ticks_per_slot,
                   Violations& violations) {
   if (window_fits(line, longest_line)) {
     return;
   }
-  // Offsets are cut towards zero to whole slots, so one seed clock less than the next slot still fits.
-  const std::int64_t seed = job.fpga.clock_multiplier;
-  const Integer least = -(Integer(mirrored_first_slot(line, longest_line)) + 1) * ticks_per_slot + seed;
-  const Integer most = (Integer(forward_first_slot(line, longest_line)) + 1) * ticks_per_slot - seed;
+  // Offsets are cut towards zero to whole slots, so one tick less than the next slot still fits.
+  const Integer least = -(Integer(mirrored_first_slot(line, longest_line)) + 1) * ticks_per_slot + 1;
+  const Integer most = (Integer(forward_first_slot(line, longest_line)) + 1) * ticks_per_slot - 1;
   violations.conflict(ErrorCode::out_of_range, "scanner.bidirectional_offset_ticks",
                       std::to_string(job.scanner.bidirectional_offset_ticks),
                       "moves the marking window of right-to-left lines out of the line; " + to_string(least) + " to " +

@@ -20,8 +20,6 @@ std::int64_t longest_line_slots(const ScannerSettings& scanner, const LinePlan& 
 bool window_fits(const LinePlan& line, std::int64_t slots);
 
 /// Complains when even the longest line does not hold the reverse window.
-/// The board delays reverse lines by whole slots and seed clocks.
-void check_delay(const Job& job, const LinePlan& line, Violations& violations);
 void check_window(const Job& job, const LinePlan& line, std::int64_t longest_line, std::int64_t ticks_per_slot,
                   Violations& violations);
 

@@ -188,7 +188,6 @@ std::int64_t check_line(const Job& job, std::int64_t pixels_per_line, Plan& plan
     return 0;
   }
   plan_line(job.scanner, pixels_per_line, plan.clock.ticks_per_slot, plan.line);
-  check_delay(job, plan.line, violations);
   const std::int64_t longest_line = longest_line_slots(job.scanner, plan.line);
   if (longest_line > kMostSlotsPerLine) {
     violations.refuse(ErrorCode::out_of_range, plan.carriage ? "carriage.feed_pixels" : "image.pixels_per_line",

@@ -65,16 +65,6 @@ Result<AbSolution> solve(const Job& job, const Plan& plan, const AxisRequest& ax
   solution.wanted_increment = increment_per_clock(wanted_hz(plan, axis, slots), bits, fpga_hz);
   if (axis.fraction) {
     GRAVURE_TRY(solution.fraction, exact_fraction(solution.wanted_increment, bits));
-    if (solution.fraction.den > static_cast<std::uint64_t>(kMostFractionDen)) {
-      return Error{ErrorCode::out_of_range,
-                   job.place_of("fpga.fractional") + "fpga.fractional = true: the exact ratio of " + axis.section +
-                       " takes fraction_den = " + std::to_string(solution.fraction.den) +
-                       "; the board's second "
-                       "accumulator holds 1 to " +
-                       std::to_string(kMostFractionDen) +
-                       ": a shorter line, fewer lines, a simpler gear or a pitch of fewer digits makes it smaller, or "
-                       "take fractional out and accept a drift"};
-    }
     solution.pair = {.prescaler = 1, .increment = solution.fraction.increment};
     return solution;
   }

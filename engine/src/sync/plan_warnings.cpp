@@ -1,5 +1,6 @@
 #include "plan_warnings.hpp"
 
+#include "check_job.hpp"
 #include "text.hpp"
 
 namespace gravure::sync_plan {
@@ -132,6 +133,37 @@ void warn_twin(const Job& job, std::vector<std::string>& warnings) {
   check("thermal", job.twin.thermal.enabled);
 }
 
+/// What the arithmetic takes and the board's registers do not (docs/registers.md): `emulate` and `run` refuse it.
+void warn_board(const Job& job, const Plan& plan, std::vector<std::string>& warnings) {
+  const std::int64_t multiplier = job.fpga.clock_multiplier;
+  if (plan.line.offset_remainder_ticks % multiplier != 0) {
+    warnings.push_back(
+        "scanner.bidirectional_offset_ticks = " + std::to_string(job.scanner.bidirectional_offset_ticks) + ": leaves " +
+        std::to_string(plan.line.offset_remainder_ticks) +
+        " ticks beside whole slots; the board delays by whole seed clocks of " + std::to_string(multiplier) +
+        " ticks and refuses it: make it a multiple of " + std::to_string(multiplier));
+  }
+  const auto check = [&warnings](const AbPlan& ab, const std::string& section) {
+    if (ab.prescaler > static_cast<std::uint64_t>(kMostPrescaler)) {
+      warnings.push_back("fpga.max_prescaler: [" + section + "] takes prescaler = " + std::to_string(ab.prescaler) +
+                         "; the board's register holds 1 to " + std::to_string(kMostPrescaler) +
+                         " and refuses it: make it " + std::to_string(kMostPrescaler) + " or less");
+    }
+    if (ab.fraction_den > static_cast<std::uint64_t>(kMostFractionDen)) {
+      warnings.push_back(
+          "fpga.fractional: the exact ratio of " + section +
+          " takes fraction_den = " + std::to_string(ab.fraction_den) + "; the board's second accumulator holds 1 to " +
+          std::to_string(kMostFractionDen) +
+          " and refuses it: a shorter line, fewer lines, a simpler gear or a pitch of fewer digits makes "
+          "it smaller");
+    }
+  };
+  check(plan.ab, plan.mode == Mode::flat ? "stage" : "rotary");
+  if (plan.carriage) {
+    check(plan.carriage->ab, "carriage");
+  }
+}
+
 /// Keys of a scanner that is not described.
 void warn_scanner(const ScannerSettings& scanner, std::vector<std::string>& warnings) {
   if (scanner.field_mm) {
@@ -169,6 +201,7 @@ std::vector<std::string> plan_warnings(const Job& job, const Plan& plan) {
   warn_start(job, plan, warnings);
   warn_encoder(plan, warnings);
   warn_scanner(job.scanner, warnings);
+  warn_board(job, plan, warnings);
   warn_limits(job, plan, warnings);
   warn_twin(job, warnings);
   if (plan.carriage) {

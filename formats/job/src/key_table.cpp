@@ -107,7 +107,7 @@ constexpr std::array kTable = {
     integer("fpga", "counter_bits", "bits", "8", "64", kRequired,
             [](Job& j, const Value& v) { j.fpga.counter_bits = static_cast<int>(v.integer); }),
     other("fpga", "fractional", Type::boolean, "false", [](Job& j, const Value& v) { j.fpga.fractional = v.boolean; }),
-    integer("fpga", "max_prescaler", "FPGA ticks", "1", "4_294_967_295", "4_294_967_295",
+    integer("fpga", "max_prescaler", "FPGA ticks", "1", "9_223_372_036_854_775_807", "4_294_967_295",
             [](Job& j, const Value& v) { j.fpga.max_prescaler = static_cast<std::uint64_t>(v.integer); }),
 
     decimal("scanner", "pixel_pitch_um", "um", "0.001", "10_000", kRequired,
