@@ -127,9 +127,13 @@ Json report_json(const Options& options, const Plan& plan, const DeviceIdentity&
   json["lines"] = {{"total", report.counts.total},
                    {"sent", report.counts.sent},
                    {"accepted", report.counts.accepted},
-                   {"executed", report.counts.executed}};
+                   {"executed", report.counts.executed},
+                   {"skipped", count_lines(report.skipped)}};
   json["executed"] = place_json(plan, report.executed);
-  json["exact"] = report.exact;
+  json["exact"] = report.exact && report.skipped.empty();
+  for (const session::Uncertain& lines : report.skipped) {
+    json["skipped"].push_back({{"from", place_json(plan, lines.from)}, {"to", place_json(plan, {lines.end_line, 0})}});
+  }
   if (!report.exact) {
     json["may_be_executed"] = place_json(plan, {report.sent_limit, 0});
   }
@@ -153,12 +157,20 @@ Json report_json(const Options& options, const Plan& plan, const DeviceIdentity&
   return json;
 }
 
-void print_report(const Options& options, const DeviceIdentity& device, const session::Journal& journal,
-                  const RunReport& report) {
+void print_report(const Options& options, const Plan& plan, const DeviceIdentity& device,
+                  const session::Journal& journal, const RunReport& report) {
   const RunCounts& counts = report.counts;
   print(fmt::format("{} on {} (serial {}): {}\n{} of {} lines executed, {} accepted, {} sent\n", options.program,
                     options.device, device.serial, end_name(report.end), counts.executed, counts.total, counts.accepted,
                     counts.sent));
+  if (!report.skipped.empty()) {
+    print(fmt::format("{} lines skipped, not known to be fired:", count_lines(report.skipped)));
+    for (const session::Uncertain& lines : report.skipped) {
+      print(fmt::format(" {} to {};", session::line_text(plan, lines.from.line),
+                        session::line_text(plan, lines.end_line - 1)));
+    }
+    print(" look at the workpiece\n");
+  }
   print(fmt::format("link: frames of {} bytes, {:.3f} Mbit/s used up, {} bytes ahead before the first line\n",
                     report.demand.frame_bytes, to_double(report.demand.bits_per_s) / 1e6, report.reserve_bytes));
   print(fmt::format("journal: {}\n", journal.path()));
@@ -181,13 +193,16 @@ Result<int> run(const Options& options, const Command& command) {
   GRAVURE_TRY(const std::string hash, hash_of(options.program));
   const Plan& plan = program->header().plan;
   const std::int64_t per_revolution = plan.rotary.lines_per_revolution;
-  GRAVURE_TRY(session::Journal journal,
-              session::Journal::open(journal_path, {.program = options.program,
-                                                    .hash = hash,
-                                                    .lines = plan.job.revolutions * per_revolution,
-                                                    .lines_per_revolution = per_revolution}));
-  GRAVURE_CHECK(session::check_options(journal, options.run.resume));
+  // First of all the device: a name that is wrong leaves no journal behind.
   GRAVURE_TRY(const OpenDevice device, open_device(options.device, options.record));
+  GRAVURE_TRY(session::Journal journal, session::Journal::open(journal_path,
+                                                               {.program = options.program,
+                                                                .hash = hash,
+                                                                .lines = plan.job.revolutions * per_revolution,
+                                                                .lines_per_revolution = per_revolution,
+                                                                .slots_per_line = plan.line.slots},
+                                                               options.run.resume.resume));
+  GRAVURE_CHECK(session::check_options(journal, options.run.resume));
   if (options.device.rfind("emulated:", 0) == 0) {  // for `gravure exposure`
     GRAVURE_CHECK(emulator::note_program(device.link->identity().place, std::filesystem::absolute(options.program)));
   }
@@ -208,9 +223,15 @@ Result<int> run(const Options& options, const Command& command) {
   if (command.json) {
     print_json(report_json(options, plan, identity, journal, *report));
   } else {
-    print_report(options, identity, journal, *report);
+    print_report(options, plan, identity, journal, *report);
   }
-  return report->error ? exit_status(report->error->code) : report->end == RunEnd::part_end ? kInterrupted : kDone;
+  if (report->error) {
+    return exit_status(report->error->code);
+  }
+  if (report->end == RunEnd::part_end) {
+    return kInterrupted;
+  }
+  return report->skipped.empty() ? kDone : kLimitViolated;  // not every line is known to be fired
 }
 
 }  // namespace

@@ -101,6 +101,8 @@ void interrupt() {
           "}\n}\n";
       static_cast<void>(!::write(STDOUT_FILENO, kDocument.data(), kDocument.size()));
     }
+    constexpr std::string_view kSaid = "gravure: error: stopped; nothing was written\n";
+    static_cast<void>(!::write(STDERR_FILENO, kSaid.data(), kSaid.size()));
     ::_exit(exit_status(ErrorCode::cancelled));
   }
   the_token.cancel();

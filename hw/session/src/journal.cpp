@@ -46,11 +46,19 @@ std::string now_text() {
 
 }  // namespace
 
+std::int64_t count_lines(const std::vector<Uncertain>& stretches) {
+  std::int64_t lines = 0;
+  for (const Uncertain& one : stretches) {
+    lines += one.end_line - one.from.line;
+  }
+  return lines;
+}
+
 class Journal::Store {
  public:
   explicit Store(std::unique_ptr<Database> database) : database_(std::move(database)) {}
 
-  Result<void> make_ready(const JobIdentity& job);
+  Result<void> make_ready(const JobIdentity& job, bool must_hold_one);
   /// All of `write` or nothing, on disk.
   template <class Write>
   Result<void> commit(Write&& write) {
@@ -72,10 +80,20 @@ class Journal::Store {
                last_ ? last_->number : std::int64_t{0}, now_text(), kind, text);
   }
   Result<void> update(const Attempt& attempt);
+  Result<void> read_skipped();
+
+  void keep(Attempt attempt) {
+    if (attempt.state != AttemptState::prepared) {
+      last_started_ = attempt;
+    }
+    last_ = std::move(attempt);
+  }
 
   Database& database() { return *database_; }
 
   std::optional<Attempt> last_;
+  std::optional<Attempt> last_started_;
+  std::vector<Uncertain> skipped_;
   std::int64_t exposure_ = 1;
   bool finished_ = false;
 
@@ -84,7 +102,9 @@ class Journal::Store {
   Result<void> create(const JobIdentity& job);
   Result<void> check_kind();
   Result<void> check_job(const JobIdentity& job);
+  Result<void> check_numbers(const JobIdentity& job);
   Result<void> read();
+  Result<std::optional<Attempt>> read_attempt(const char* which);
 
   std::unique_ptr<Database> database_;
 };
@@ -132,13 +152,33 @@ Result<void> Journal::Store::check_job(const JobIdentity& job) {
   if (!row) {
     return damaged("it names no job");
   }
-  if (stored.text(1) != job.hash || stored.integer(2) != job.lines || stored.integer(3) != job.lines_per_revolution) {
+  if (stored.text(1) != job.hash) {
     return Error{ErrorCode::bad_argument,
                  fmt::format("journal {} is of another program: {} with hash {}, this one has {}: give that program, "
                              "or another journal with --journal",
                              database_->path(), stored.text(0), stored.text(1), job.hash)};
   }
+  if (stored.integer(2) != job.lines || stored.integer(3) != job.lines_per_revolution) {
+    return damaged(fmt::format("it has {} lines, {} a revolution, where this program, of the same hash, has {} and {}",
+                               stored.integer(2), stored.integer(3), job.lines, job.lines_per_revolution));
+  }
   return {};
+}
+
+/// Rows that are gone, and places that the job does not have.
+Result<void> Journal::Store::check_numbers(const JobIdentity& job) {
+  GRAVURE_TRY(const std::int64_t orphans,
+              database_->query("SELECT (SELECT count(*) FROM progress WHERE attempt NOT IN (SELECT number FROM "
+                               "attempt)) + (SELECT count(*) FROM event WHERE attempt > 0 AND attempt NOT IN (SELECT "
+                               "number FROM attempt)) + (SELECT coalesce(max(number), 0) - count(*) FROM attempt)"));
+  if (orphans != 0) {
+    return damaged("it tells of attempts whose rows are gone");
+  }
+  GRAVURE_TRY(const std::int64_t outside,
+              database_->query(fmt::format("SELECT count(*) FROM attempt WHERE end_line > {} OR ({} > 0 AND "
+                                           "(first_slots > {} OR executed_slots > {}))",
+                                           job.lines, job.slots_per_line, job.slots_per_line, job.slots_per_line)));
+  return outside == 0 ? Result<void>() : damaged("an attempt ends at a line or slot that the job does not have");
 }
 
 Result<void> Journal::Store::read() {
@@ -151,36 +191,68 @@ Result<void> Journal::Store::read() {
   }
   exposure_ = exposure.integer(0);
   finished_ = exposure.integer(1) != 0;
-  GRAVURE_TRY(Statement attempt,
-              database_->prepare("SELECT number, device, serial, power_up, mark, first_line, first_slots, end_line, "
-                                 "state, executed_line, executed_slots, sent_limit FROM attempt WHERE exposure = ? "
-                                 "ORDER BY number DESC LIMIT 1"));
-  GRAVURE_TRY(const bool row, attempt.bind(exposure_).step());
-  if (row) {
-    last_ = Attempt{.number = attempt.integer(0),
-                    .device = attempt.text(1),
-                    .serial = attempt.text(2),
-                    .power_up = static_cast<std::uint64_t>(attempt.integer(3)),
-                    .mark = static_cast<std::uint32_t>(attempt.integer(4)),
-                    .first = {attempt.integer(5), attempt.integer(6)},
-                    .end_line = attempt.integer(7),
-                    .state = static_cast<AttemptState>(attempt.integer(8)),
-                    .executed = {attempt.integer(9), attempt.integer(10)},
-                    .sent_limit = attempt.integer(11)};
-  }
-  return {};
+  GRAVURE_TRY(last_, read_attempt("state >= 0"));
+  GRAVURE_TRY(last_started_, read_attempt("state > 0"));
+  return read_skipped();
 }
 
-Result<void> Journal::Store::make_ready(const JobIdentity& job) {
+/// The last one of the exposure that is so.
+Result<std::optional<Attempt>> Journal::Store::read_attempt(const char* which) {
+  GRAVURE_TRY(Statement attempt,
+              database_->prepare(fmt::format("SELECT number, device, serial, power_up, mark, first_line, first_slots, "
+                                             "end_line, state, executed_line, executed_slots, sent_limit FROM attempt "
+                                             "WHERE exposure = ? AND {} ORDER BY number DESC LIMIT 1",
+                                             which)
+                                     .c_str()));
+  GRAVURE_TRY(const bool row, attempt.bind(exposure_).step());
+  if (!row) {
+    return std::optional<Attempt>();
+  }
+  return std::optional(Attempt{.number = attempt.integer(0),
+                               .device = attempt.text(1),
+                               .serial = attempt.text(2),
+                               .power_up = static_cast<std::uint64_t>(attempt.integer(3)),
+                               .mark = static_cast<std::uint32_t>(attempt.integer(4)),
+                               .first = {attempt.integer(5), attempt.integer(6)},
+                               .end_line = attempt.integer(7),
+                               .state = static_cast<AttemptState>(attempt.integer(8)),
+                               .executed = {attempt.integer(9), attempt.integer(10)},
+                               .sent_limit = attempt.integer(11)});
+}
+
+/// A decision of an attempt that was not started is void: the next one decides anew.
+Result<void> Journal::Store::read_skipped() {
+  GRAVURE_TRY(Statement rows, database_->prepare("SELECT u.first_line, u.first_slots, u.end_line FROM uncertain u JOIN "
+                                                 "attempt a ON a.number = u.attempt WHERE a.exposure = ? AND a.state > "
+                                                 "0 AND u.policy = 'skip' ORDER BY u.first_line"));
+  static_cast<void>(rows.bind(exposure_));
+  skipped_.clear();
+  for (;;) {
+    GRAVURE_TRY(const bool row, rows.step());
+    if (!row) {
+      return {};
+    }
+    skipped_.push_back({{rows.integer(0), rows.integer(1)}, rows.integer(2)});
+  }
+}
+
+Result<void> Journal::Store::make_ready(const JobIdentity& job, bool must_hold_one) {
   GRAVURE_CHECK(database_->execute("PRAGMA locking_mode = EXCLUSIVE"));
   GRAVURE_CHECK(database_->execute("PRAGMA journal_mode = WAL"));
   GRAVURE_CHECK(database_->execute("PRAGMA synchronous = FULL"));
   GRAVURE_TRY(const std::int64_t things, database_->query("SELECT count(*) FROM sqlite_schema"));
+  if (things == 0 && must_hold_one) {
+    return Error{ErrorCode::bad_argument,
+                 "journal " + database_->path() +
+                     ": it is empty, so what the workpiece has got is known only to the board and to you: begin anew "
+                     "with --again, or give the journal of the run with --journal"};
+  }
   if (things == 0) {
     GRAVURE_CHECK(create(job));
   } else {
     GRAVURE_CHECK(check_kind());
     GRAVURE_CHECK(check_job(job));
+    GRAVURE_CHECK(check_numbers(job));
   }
   GRAVURE_CHECK(read());
   // Written at once, so that a journal that cannot be is found before anything runs.
@@ -198,10 +270,10 @@ Journal::Journal(Journal&& other) noexcept = default;
 Journal& Journal::operator=(Journal&& other) noexcept = default;
 Journal::~Journal() = default;
 
-Result<Journal> Journal::open(const std::string& path, const JobIdentity& job) {
+Result<Journal> Journal::open(const std::string& path, const JobIdentity& job, bool must_hold_one) {
   GRAVURE_TRY(std::unique_ptr<Database> database, Database::open(path));
   auto store = std::make_unique<Store>(std::move(database));
-  GRAVURE_CHECK(store->make_ready(job));
+  GRAVURE_CHECK(store->make_ready(job, must_hold_one));
   return Journal(std::move(store));
 }
 
@@ -210,6 +282,12 @@ const std::string& Journal::path() const noexcept {
 }
 const std::optional<Attempt>& Journal::last() const noexcept {
   return store_->last_;
+}
+const std::optional<Attempt>& Journal::last_started() const noexcept {
+  return store_->last_started_;
+}
+const std::vector<Uncertain>& Journal::skipped() const noexcept {
+  return store_->skipped_;
 }
 std::int64_t Journal::exposure() const noexcept {
   return store_->exposure_;
@@ -224,6 +302,8 @@ Result<void> Journal::begin_exposure() {
   ++store_->exposure_;
   store_->finished_ = false;
   store_->last_.reset();
+  store_->last_started_.reset();
+  store_->skipped_.clear();
   return {};
 }
 
@@ -250,8 +330,8 @@ Result<void> Journal::started(std::int64_t sent_limit) {
   next.state = AttemptState::started;
   next.sent_limit = sent_limit;
   GRAVURE_CHECK(store_->commit([&] { return store_->update(next); }));
-  store_->last_ = std::move(next);
-  return {};
+  store_->last_ = store_->last_started_ = std::move(next);
+  return store_->read_skipped();
 }
 
 Result<void> Journal::acknowledged(const Acknowledged& now) {
@@ -266,7 +346,7 @@ Result<void> Journal::acknowledged(const Acknowledged& now) {
     return store_->update(next);
   });
   GRAVURE_CHECK(on_disk);
-  store_->last_ = std::move(next);
+  store_->keep(std::move(next));
   return {};
 }
 
@@ -281,18 +361,32 @@ Result<void> Journal::ended(AttemptState state, Place executed, std::int64_t sen
     return store_->add_event("end", why);
   });
   GRAVURE_CHECK(on_disk);
-  store_->last_ = std::move(next);
+  store_->keep(std::move(next));
   return {};
 }
 
-Result<void> Journal::uncertain(const Uncertain& lines, const std::string& policy) {
-  return store_->commit([&] {
+Result<void> Journal::found(Place executed) {
+  Attempt next = *store_->last_started_;
+  next.state = AttemptState::ended;
+  next.executed = executed;
+  next.sent_limit = executed.line;
+  GRAVURE_CHECK(store_->commit([&] { return store_->update(next); }));
+  if (store_->last_->number == next.number) {
+    store_->last_ = next;
+  }
+  store_->last_started_ = std::move(next);
+  return {};
+}
+
+Result<void> Journal::uncertain(const Uncertain& lines, bool skip, bool now) {
+  const std::int64_t attempt = now ? store_->last_started_->number : store_->last_->number;
+  GRAVURE_CHECK(store_->commit([&] {
     return store_->run(
         "INSERT INTO uncertain (attempt, at, first_line, first_slots, end_line, policy) VALUES (?, ?, ?, "
         "?, ?, ?)",
-        store_->last_ ? store_->last_->number : std::int64_t{0}, now_text(), lines.from.line, lines.from.slots,
-        lines.end_line, policy);
-  });
+        attempt, now_text(), lines.from.line, lines.from.slots, lines.end_line, std::string(skip ? "skip" : "repeat"));
+  }));
+  return store_->read_skipped();
 }
 
 Result<void> Journal::event(const std::string& kind, const std::string& text) {
@@ -302,7 +396,11 @@ Result<void> Journal::event(const std::string& kind, const std::string& text) {
 Result<void> Journal::finish() {
   const Result<void> on_disk = store_->commit([&]() -> Result<void> {
     GRAVURE_CHECK(store_->run("UPDATE exposure SET finished = ? WHERE number = ?", now_text(), store_->exposure_));
-    return store_->add_event("finished", "every line was executed");
+    const std::int64_t skipped = count_lines(store_->skipped_);
+    return store_->add_event("finished", skipped == 0 ? std::string("every line was executed")
+                                                      : fmt::format("the end is reached; {} lines were skipped, not "
+                                                                    "known to be fired",
+                                                                    skipped));
   });
   GRAVURE_CHECK(on_disk);
   store_->finished_ = true;

@@ -5,11 +5,6 @@
 namespace gravure::session {
 namespace {
 
-bool nothing_fired(const Journal& journal) {
-  const std::optional<Attempt>& last = journal.last();
-  return !last || (last->state == AttemptState::prepared && last->first == Place{});
-}
-
 /// By the board's own count.
 Result<Beginning> by_board(const Attempt& last, const BoardMemory& board) {
   // The count has 32 bits: what it went on since the journal was written, then.
@@ -68,16 +63,19 @@ Result<void> check_options(const Journal& journal, const ResumeOptions& options)
     return {};
   }
   if (journal.finished()) {
-    return Error{ErrorCode::bad_argument, fmt::format("journal {}: the job is finished, every line was executed: "
-                                                      "--again exposes it once more",
-                                                      journal.path())};
-  }
-  if (!options.resume && !nothing_fired(journal)) {
-    const Attempt& last = *journal.last();
+    const std::int64_t skipped = count_lines(journal.skipped());
+    const std::string how = skipped == 0 ? std::string("every line was executed")
+                                         : fmt::format("{} lines were skipped, not known to be fired", skipped);
     return Error{ErrorCode::bad_argument,
-                 fmt::format("journal {}: the job was begun, line {} of it is the last that is known to be done: go "
-                             "on with --resume, or begin anew with --again",
-                             journal.path(), last.executed.line - 1)};
+                 fmt::format("journal {}: the job is finished, {}: --again exposes it once more", journal.path(), how)};
+  }
+  if (!options.resume && journal.last_started()) {
+    const std::int64_t done = journal.last_started()->executed.line;
+    const std::string known = done == 0 ? std::string("no line of it is known to be done")
+                                        : fmt::format("line {} of it is the last that is known to be done", done - 1);
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("journal {}: the job was begun, {}: go on with --resume, or begin anew with --again",
+                             journal.path(), known)};
   }
   return {};
 }
@@ -86,14 +84,14 @@ Result<Beginning> where_to_begin(const Journal& journal, const BoardMemory& boar
   if (options.again || !journal.last()) {
     return Beginning{.place = {}, .uncertain = {}, .why = "from the first line"};
   }
-  const Attempt& last = *journal.last();
-  if (last.serial != board.serial && !options.other_device && !nothing_fired(journal)) {
+  if (!journal.last_started()) {
+    return Beginning{.place = journal.last()->first, .uncertain = {}, .why = "no line of the last attempt was begun"};
+  }
+  const Attempt& last = *journal.last_started();
+  if (last.serial != board.serial && !options.other_device) {
     return Error{ErrorCode::bad_argument, fmt::format("the job was begun on board {}, this is {}: give that one, or "
                                                       "--other-device to go on with this one",
                                                       last.serial, board.serial)};
-  }
-  if (last.state == AttemptState::prepared) {
-    return Beginning{.place = last.first, .uncertain = {}, .why = "no line of the last attempt was begun"};
   }
   if (last.state == AttemptState::ended) {
     return Beginning{.place = last.executed, .uncertain = {}, .why = "by the journal"};

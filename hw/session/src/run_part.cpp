@@ -429,6 +429,8 @@ Error PartRun::describe(const Error& cause, const PartOutcome& outcome) const {
   std::string text = cause.message + ": the gate is closed. ";
   if (!started_) {
     text += "Nothing was fired in this run";
+  } else if (outcome.exact && outcome.executed == Place{}) {
+    text += "Nothing was fired";
   } else if (outcome.exact) {
     text += fmt::format("Fired is all before {}", line_text(plan, outcome.executed.line));
     if (outcome.executed.slots != 0) {
@@ -447,7 +449,8 @@ std::int64_t PartRun::sent_lines() const {
 
 RunCounts PartRun::counts() const {
   const std::int64_t first = settings_.first.line;
-  return {first + sent_bytes_ / settings_.frame_bytes, first + taken_, first + executed_, settings_.total_lines};
+  return {first + sent_bytes_ / settings_.frame_bytes, first + taken_, first + executed_ - settings_.skipped_lines,
+          settings_.total_lines};
 }
 
 Acknowledged PartRun::acknowledged() const {

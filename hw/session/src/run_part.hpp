@@ -16,7 +16,8 @@ namespace gravure::session {
 struct PartSettings {
   Place first;
   std::int64_t end_line = 0;
-  std::int64_t total_lines = 0;  ///< of the job
+  std::int64_t total_lines = 0;    ///< of the job
+  std::int64_t skipped_lines = 0;  ///< before the first
   protocol::LineTiming timing;
   protocol::StartSequence sequence;
   std::vector<protocol::RegisterWrite> stop;

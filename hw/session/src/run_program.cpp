@@ -69,6 +69,7 @@ class Run {
     GRAVURE_CHECK(look_at_board());
     GRAVURE_CHECK(find_beginning());
     GRAVURE_CHECK(run_parts());
+    report_.skipped = journal_.skipped();
     return report_;
   }
 
@@ -104,22 +105,48 @@ class Run {
     if (status_.fault != DeviceFault::none) {
       note("fault", "the board stood with the fault " + to_string(status_.fault) + ", which is acknowledged now");
     }
+    const std::optional<Attempt>& last = journal_.last_started();
+    const bool open = last && (last->state == AttemptState::started || last->state == AttemptState::lost);
+    if (open && !report_.begun.uncertain) {  // the board forgets it when lines are prepared
+      GRAVURE_CHECK(journal_.found(report_.begun.place));
+    }
     if (report_.begun.uncertain) {
-      GRAVURE_CHECK(note_uncertain(*report_.begun.uncertain));
+      say_uncertain(*report_.begun.uncertain);
+      if (report_.begun.place.line == total()) {
+        GRAVURE_CHECK(note_uncertain(true));
+      }
     }
     report_.executed = report_.begun.place;
-    report_.counts = {report_.begun.place.line, report_.begun.place.line, report_.begun.place.line, total()};
+    const std::int64_t line = report_.begun.place.line;
+    report_.counts = {line, line, line - skipped_before(line), total()};
     return {};
   }
 
-  Result<void> note_uncertain(const Uncertain& lines) {
-    const UncertainPolicy policy = options_.resume.uncertain;
-    observer_.on_note(
-        fmt::format("uncertain: {} to {} may have been fired or not ({} lines): {}", line_text(plan_, lines.from.line),
-                    line_text(plan_, lines.end_line - 1), lines.end_line - lines.from.line,
-                    policy == UncertainPolicy::skip ? "skipped, nothing is fired twice and some of them may stay dark"
-                                                    : "repeated, all are fired and some of them may be fired twice"));
-    return journal_.uncertain(lines, to_string(policy));
+  void say_uncertain(const Uncertain& lines) {
+    const bool skip = options_.resume.uncertain == UncertainPolicy::skip;
+    observer_.on_note(fmt::format("uncertain: {} to {} may have been fired or not ({} lines): {}",
+                                  line_text(plan_, lines.from.line), line_text(plan_, lines.end_line - 1),
+                                  lines.end_line - lines.from.line,
+                                  skip ? "skipped, nothing is fired twice and some of them may stay dark"
+                                       : "repeated, all are fired and some of them may be fired twice"));
+  }
+
+  Result<void> note_uncertain(bool now) {
+    return journal_.uncertain(*report_.begun.uncertain, options_.resume.uncertain == UncertainPolicy::skip, now);
+  }
+
+  /// Those that are about to be, too: a decision counts in the journal once lines are started.
+  std::int64_t skipped_before(std::int64_t line) const {
+    std::vector<Uncertain> all = journal_.skipped();
+    const std::optional<Uncertain>& now = report_.begun.uncertain;
+    const bool skip = now && options_.resume.uncertain == UncertainPolicy::skip;
+    const auto same = [&now](const Uncertain& one) { return one.from == now->from && one.end_line == now->end_line; };
+    if (skip && std::none_of(all.begin(), all.end(), same)) {
+      all.push_back(*now);
+    }
+    all.erase(std::remove_if(all.begin(), all.end(), [line](const Uncertain& one) { return one.from.line >= line; }),
+              all.end());
+    return count_lines(all);
   }
 
   void note(const std::string& kind, const std::string& text) {
@@ -167,6 +194,9 @@ class Run {
                                   .state = AttemptState::prepared,
                                   .executed = place,
                                   .sent_limit = place.line}));
+    if (report_.begun.uncertain && place == report_.begun.place) {
+      GRAVURE_CHECK(note_uncertain(false));
+    }
     PartOutcome outcome = PartRun(program_, link_, journal_, std::move(settings), options_, observer_, cancel_).run();
     report_.counts = outcome.counts;
     report_.executed = outcome.executed;
@@ -196,6 +226,7 @@ class Run {
     settings.first = place;
     settings.end_line = end_of(part);
     settings.total_lines = total();
+    settings.skipped_lines = skipped_before(place.line);
     settings.seed_hz = plan_.clock.seed_hz;
     settings.timing = {.slots_per_microvector = plan_.line.slots_per_microvector,
                        .backward_later_ticks = plan_.line.offset_remainder_ticks,

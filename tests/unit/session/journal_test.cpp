@@ -92,6 +92,41 @@ TEST(Journal, RefusesAnotherProgram) {
   expect_refused(Journal::open(folder / "j", other), ErrorCode::bad_argument, "hash 0123, this one has 4567");
 }
 
+TEST(Journal, RefusesNumbersThatTheJobDoesNotHave) {
+  const auto refused = [](const std::string& damage, const char* part) {
+    Folder folder;
+    JobIdentity job = kJob;
+    job.slots_per_line = 500;
+    {
+      Result<Journal> journal = Journal::open(folder / "j", job);
+      ASSERT_TRUE(journal);
+      ASSERT_TRUE(journal.value().begin(attempt_from(10)));
+      ASSERT_TRUE(journal.value().started(50));
+      ASSERT_TRUE(journal.value().acknowledged({20, 30, 40, 60}));
+    }
+    change(folder / "j", damage);
+    expect_refused(Journal::open(folder / "j", job), ErrorCode::bad_file, part);
+  };
+  refused("UPDATE attempt SET executed_slots = 501", "a line or slot that the job does not have");
+  refused("UPDATE attempt SET first_slots = 501", "a line or slot that the job does not have");
+  refused("UPDATE attempt SET end_line = 101", "a line or slot that the job does not have");
+  refused("UPDATE job SET lines = 99",
+          "it has 99 lines, 10 a revolution, where this program, of the same hash, has 100");
+  refused("DELETE FROM attempt", "attempts whose rows are gone");
+  refused("DELETE FROM progress; INSERT INTO event VALUES (99, 1, '', 'end', ''); DELETE FROM attempt",
+          "attempts whose rows are gone");
+}
+
+TEST(Journal, RefusesAnEmptyFileWhereOneIsToBe) {
+  for (const std::size_t bytes : {0U, 1U}) {
+    Folder folder;
+    std::ofstream(folder / "j") << std::string(bytes, 'x');
+    const Result<Journal> journal = Journal::open(folder / "j", kJob, true);
+    ASSERT_FALSE(journal) << bytes;
+    EXPECT_EQ(exit_status(journal.error().code), 2) << journal.error().message;
+  }
+}
+
 TEST(Journal, RefusesAnotherVersionNamingBoth) {
   Folder folder;
   ASSERT_TRUE(Journal::open(folder / "j", kJob));

@@ -106,6 +106,61 @@ TEST_F(Resume, RefusesAnotherDeviceUnlessTold) {
   EXPECT_NE(where.error().message.find("board A, this is B"), std::string::npos) << where.error().message;
 }
 
+TEST_F(Resume, DecidesAnewWhereWhatWasDecidedDidNotStart) {
+  start({120, 150, 200, 400});
+  BoardMemory board = kBoard;
+  board.power_up = 8;
+  for (const UncertainPolicy policy : {UncertainPolicy::skip, UncertainPolicy::repeat, UncertainPolicy::skip}) {
+    options_.uncertain = policy;
+    const Result<Beginning> where = where_to_begin(*journal_, board, options_);
+    ASSERT_TRUE(where) << where.error().message;
+    ASSERT_TRUE(where.value().uncertain);
+    EXPECT_EQ(where.value().place, policy == UncertainPolicy::skip ? (Place{400, 0}) : (Place{120, 0}));
+    Attempt next = attempt();
+    next.power_up = 8;
+    next.mark = board.mark = 100;
+    next.first = where.value().place;
+    ASSERT_TRUE(journal_->begin(next));
+    ASSERT_TRUE(journal_->uncertain(*where.value().uncertain, policy == UncertainPolicy::skip, false));
+    EXPECT_TRUE(journal_->skipped().empty()) << "nothing is decided before lines are started";
+  }
+  ASSERT_TRUE(journal_->started(500));
+  ASSERT_EQ(journal_->skipped().size(), 1U);
+  EXPECT_EQ(journal_->skipped()[0].from.line, 120);
+  EXPECT_EQ(count_lines(journal_->skipped()), 280);
+}
+
+TEST_F(Resume, KeepsWhatTheBoardSaidBeforeItForgetsIt) {
+  start({120, 150, 200, 400});
+  const Result<Beginning> where = where_to_begin(*journal_, kBoard, options_);
+  ASSERT_TRUE(where);
+  ASSERT_TRUE(journal_->found(where.value().place));
+  Attempt next = attempt();
+  next.mark = 100;
+  next.first = where.value().place;
+  ASSERT_TRUE(journal_->begin(next));  // and is not started
+  BoardMemory board = kBoard;
+  board.mark = 100;
+  board.executed_lines = 0;
+  const Result<Beginning> again = where_to_begin(*journal_, board, options_);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again.value().place, (Place{140, 5}));
+  EXPECT_FALSE(again.value().uncertain);
+}
+
+TEST_F(Resume, SaysThatNoLineIsKnownToBeDone) {
+  ASSERT_TRUE(journal_->begin_exposure());
+  Attempt first = attempt();
+  first.first = {};
+  ASSERT_TRUE(journal_->begin(first));
+  EXPECT_TRUE(check_options(*journal_, {})) << "nothing of it can have fired";
+  ASSERT_TRUE(journal_->started(300));
+  const Result<void> refused = check_options(*journal_, {});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("no line of it is known to be done"), std::string::npos)
+      << refused.error().message;
+}
+
 TEST_F(Resume, RefusesABoardThatContradictsTheJournal) {
   start({120, 150, 200, 400});
   for (const std::uint32_t executed : {19U, 301U}) {

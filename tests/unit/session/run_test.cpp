@@ -35,5 +35,38 @@ TEST(Run, ExposesEveryPixelOnce) {
   }
 }
 
+TEST(Run, NamesLinesThatItSkipped) {
+  Dice dice(11);
+  Folder folder;
+  MemoryProgram program;
+  random_program(program, small_job(20), 33, 2, dice);
+  BoardOptions options{.serial = "A", .faults = {{.kind = emulator::WireFaultKind::power, .line = 0, .slot = 0}}};
+  {
+    Result<EmulatedBoard> board = EmulatedBoard::open(folder / "board", options);
+    ASSERT_TRUE(board) << board.error().message;
+    EmulatedLink link(std::move(board).value());
+    Notes notes;
+    const Result<RunReport> report = run_once(program, link, folder / "j", {}, notes);
+    ASSERT_TRUE(report) << report.error().message;
+    ASSERT_EQ(report.value().end, RunEnd::failed);
+  }
+  options.faults.clear();
+  Result<EmulatedBoard> board = EmulatedBoard::open(folder / "board", options);
+  ASSERT_TRUE(board) << board.error().message;
+  EmulatedLink link(std::move(board).value());
+  Notes notes;
+  const Result<RunReport> report = run_once(program, link, folder / "j", {.resume = {.resume = true}}, notes);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report.value().end, RunEnd::finished);
+  EXPECT_EQ(count_lines(report.value().skipped), 40);
+  EXPECT_EQ(report.value().counts.executed, 0);
+  const Result<Journal> journal = Journal::open(folder / "j", identity_of(program));
+  ASSERT_TRUE(journal);
+  const Result<void> finished = check_options(journal.value(), {});
+  ASSERT_FALSE(finished);
+  EXPECT_NE(finished.error().message.find("40 lines were skipped, not known to be fired"), std::string::npos)
+      << finished.error().message;
+}
+
 }  // namespace
 }  // namespace gravure::session::test

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gravure/core/device_link.hpp"
 #include "gravure/core/error.hpp"
@@ -24,6 +25,7 @@ struct JobIdentity {
   std::string hash;     ///< what decides
   std::int64_t lines = 0;
   std::int64_t lines_per_revolution = 0;
+  std::int64_t slots_per_line = 0;  ///< not kept: what a journal says is held against it
 };
 
 enum class AttemptState : std::uint8_t {
@@ -60,6 +62,7 @@ struct Uncertain {
   Place from;
   std::int64_t end_line = 0;
 };
+std::int64_t count_lines(const std::vector<Uncertain>& stretches);
 
 /// What a job has done, on disk before it is relied on: an SQLite file (docs/formats/journal.md), one user at a time.
 /// Whatever returns without an error is on disk, power failures included.
@@ -71,7 +74,8 @@ class Journal {
   static constexpr std::int64_t kSchemaVersion = 1;
 
   /// Opens the journal of a job, or begins one. bad_argument where it is of another program.
-  static Result<Journal> open(const std::string& path, const JobIdentity& job);
+  /// `must_hold_one`: bad_argument where the file holds nothing.
+  static Result<Journal> open(const std::string& path, const JobIdentity& job, bool must_hold_one = false);
   Journal(Journal&& other) noexcept;
   Journal& operator=(Journal&& other) noexcept;
   ~Journal();
@@ -79,6 +83,10 @@ class Journal {
   const std::string& path() const noexcept;
   /// The last one of this exposure, if there is any.
   const std::optional<Attempt>& last() const noexcept;
+  /// The last one of this exposure that was started: those behind it have fired nothing, nor decided anything.
+  const std::optional<Attempt>& last_started() const noexcept;
+  /// Lines of this exposure that were skipped without anybody knowing whether they were fired.
+  const std::vector<Uncertain>& skipped() const noexcept;
   /// The exposure that is under way, from 1; another one begins with begin_exposure().
   std::int64_t exposure() const noexcept;
   bool finished() const noexcept;
@@ -89,9 +97,13 @@ class Journal {
   Result<void> started(std::int64_t sent_limit);
   Result<void> acknowledged(const Acknowledged& now);
   Result<void> ended(AttemptState state, Place executed, std::int64_t sent_limit, const std::string& why);
-  Result<void> uncertain(const Uncertain& lines, const std::string& policy);
+  /// What the board said of last_started() when it was asked again: where it ended, exactly.
+  Result<void> found(Place executed);
+  /// A decision, which counts once the last attempt is started; with `now` at once, where there is nothing to start.
+  Result<void> uncertain(const Uncertain& lines, bool skip, bool now);
   /// A line for people: faults, what was acknowledged, what was skipped.
   Result<void> event(const std::string& kind, const std::string& text);
+  /// The end of the job is reached.
   Result<void> finish();
 
  private:

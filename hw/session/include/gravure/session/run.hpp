@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gravure/core/device_link.hpp"
 #include "gravure/core/program.hpp"
@@ -27,7 +28,7 @@ struct RunOptions {
 struct RunCounts {
   std::int64_t sent = 0;      ///< handed to the link
   std::int64_t accepted = 0;  ///< taken by the board, in sequence and whole
-  std::int64_t executed = 0;  ///< passed from the first slot to the last
+  std::int64_t executed = 0;  ///< passed from the first slot to the last, without those that were skipped
   std::int64_t total = 0;
 };
 
@@ -41,7 +42,7 @@ class RunObserver {
 };
 
 enum class RunEnd : std::uint8_t {
-  finished,  ///< every line of the job is executed
+  finished,  ///< every line of the job is executed, or was skipped
   part_end,  ///< a band or pass is; `to_do` says what the next one needs
   stopped,   ///< asked to
   failed,    ///< by a fault, the link or the journal
@@ -59,6 +60,7 @@ struct RunReport {
   Place executed;
   bool exact = true;  ///< false: lines from `executed` to `sent_limit` may have run, too
   std::int64_t sent_limit = 0;
+  std::vector<Uncertain> skipped;  ///< in this exposure, not known to be fired
   DeviceFault fault = DeviceFault::none;
   std::string to_do;
 };
