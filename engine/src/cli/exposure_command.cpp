@@ -90,10 +90,31 @@ BilevelTiffPage page_of(const ProgramHeader& header) {
   return page;
 }
 
-Result<int> run(Options options, const Command& command) {
-  if (options.program.empty()) {
-    GRAVURE_TRY(options.program, emulator::noted_program(options.folder));
+/// The one that was noted, unless another is asked for: that one may have run before it.
+Result<void> choose_program(Options& options) {
+  const Result<emulator::NotedProgram> noted = emulator::noted_program(options.folder);
+  const bool asked = !options.program.empty();
+  if (!noted) {
+    return asked ? Result<void>() : Result<void>(noted.error());
   }
+  options.program = asked ? options.program : noted.value().path;
+  GRAVURE_TRY(const std::string seal, emulator::program_seal(options.program));
+  if (noted.value().seal.empty() || noted.value().seal == seal) {
+    return {};
+  }
+  if (!asked) {
+    return Error{ErrorCode::bad_file, options.program + " is not the program that the board in " + options.folder +
+                                          " ran: it was written anew; give the one that ran with --program"};
+  }
+  warn(
+      fmt::format("--program {} is not what the board in {} ran last, {}: the picture may have lines of that one in "
+                  "wrong places",
+                  options.program, options.folder, noted.value().path));
+  return {};
+}
+
+Result<int> run(Options options, const Command& command) {
+  GRAVURE_CHECK(choose_program(options));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
   GRAVURE_TRY(ExposureCount count, ExposureCount::make(header, options.revolution, options.layer));
@@ -122,8 +143,8 @@ Result<int> run(Options options, const Command& command) {
     print(
         fmt::format("{}: {} as the board fired it, {} x {}; pixels fired not at all {}, once {}, more often {} (at "
                     "most {} times)\n",
-                    options.output, what, count.size().width, count.size().height, times.pixels[0], times.pixels[1],
-                    times.twice_or_more(), times.most()));
+                    printable(options.output), what, count.size().width, count.size().height, times.pixels[0],
+                    times.pixels[1], times.twice_or_more(), times.most()));
   }
   return kDone;
 }

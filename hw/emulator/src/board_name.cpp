@@ -4,6 +4,7 @@
 #include <charconv>
 #include <chrono>
 #include <limits>
+#include <vector>
 
 #include "gravure/fpga/register_map.hpp"
 
@@ -69,7 +70,9 @@ Result<void> set_option(std::string_view key, std::string_view value, BoardOptio
     options.faults.push_back(fault);
   } else {
     return Error{ErrorCode::bad_argument,
-                 "emulated board: \"" + std::string(key) + "\" is no option; there are " + std::string(kKeys)};
+                 key.empty()
+                     ? "emulated board: an option without a name; there are " + std::string(kKeys)
+                     : "emulated board: \"" + std::string(key) + "\" is no option; there are " + std::string(kKeys)};
   }
   return {};
 }
@@ -77,13 +80,20 @@ Result<void> set_option(std::string_view key, std::string_view value, BoardOptio
 }  // namespace
 
 Result<void> parse_board_options(std::string_view text, BoardOptions& options) {
-  while (!text.empty()) {
+  std::vector<std::string_view> given;
+  for (bool more = !text.empty(); more;) {
     const std::size_t end = std::min(text.find(','), text.size());
     const std::string_view option = text.substr(0, end);
+    more = end < text.size();
     text.remove_prefix(std::min(end + 1, text.size()));
     const std::size_t equals = std::min(option.find('='), option.size());
+    const std::string_view key = option.substr(0, equals);
     const std::string_view value = option.substr(std::min(equals + 1, option.size()));
-    GRAVURE_CHECK(set_option(option.substr(0, equals), value, options));
+    if (key != "fault" && std::ranges::find(given, key) != given.end()) {
+      return refusal(key, value, "given a second time; give " + std::string(key) + " once");
+    }
+    given.push_back(key);
+    GRAVURE_CHECK(set_option(key, value, options));
   }
   return {};
 }
@@ -93,6 +103,9 @@ Result<BoardName> parse_board_name(std::string_view text) {
   BoardName name{.folder = std::string(text.substr(0, end)), .options = {}};
   if (name.folder.empty()) {
     return Error{ErrorCode::bad_argument, "emulated board: no folder given; name it emulated:DIR[,key=value...]"};
+  }
+  if (end + 1 == text.size()) {
+    return Error{ErrorCode::bad_argument, "emulated board: no option behind the last comma; leave the comma out"};
   }
   GRAVURE_CHECK(parse_board_options(text.substr(std::min(end + 1, text.size())), name.options));
   return name;

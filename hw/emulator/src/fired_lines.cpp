@@ -3,16 +3,20 @@
 #include <fcntl.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <filesystem>
 #include <system_error>
 
 #include "board_folder.hpp"
+#include "gravure/core/crc32c.hpp"
 #include "gravure/core/file_output.hpp"
 
 namespace gravure::emulator {
 namespace {
 
 constexpr char kProgramFile[] = "program";
+constexpr std::size_t kSealBytes = 512;
 
 }  // namespace
 
@@ -37,13 +41,24 @@ std::vector<std::string> state_files(const std::string& folder) {
   return files;
 }
 
+Result<std::string> program_seal(const std::string& path) {
+  GRAVURE_TRY(const OpenFile file, open_regular(path, O_RDONLY));
+  std::array<std::byte, kSealBytes> head{};
+  GRAVURE_TRY(const std::size_t got, source_of(file, path)(head));
+  std::array<char, 8> digits{};
+  const std::uint32_t seal = ~crc32c_continue(kCrc32cStart, std::span(head).first(got));
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), seal, 16).ptr;
+  return std::string(digits.data(), end);
+}
+
 Result<void> note_program(const std::string& folder, const std::string& path) {
   std::error_code unknown;
   const std::filesystem::path whole = std::filesystem::absolute(path, unknown);
-  return write_file(folder + "/" + kProgramFile, (unknown ? path : whole.string()) + "\n");
+  GRAVURE_TRY(const std::string seal, program_seal(path));
+  return write_file(folder + "/" + kProgramFile, (unknown ? path : whole.string()) + "\n" + seal + "\n");
 }
 
-Result<std::string> noted_program(const std::string& folder) {
+Result<NotedProgram> noted_program(const std::string& folder) {
   const std::string name = folder + "/" + kProgramFile;
   constexpr std::size_t kMostBytes = 1 << 16;
   std::error_code unknown;
@@ -51,9 +66,10 @@ Result<std::string> noted_program(const std::string& folder) {
     return Error{ErrorCode::bad_file,
                  name + " is not there: nothing says which program this board ran; give --program"};
   }
-  GRAVURE_TRY(std::string path, read_file(name, kMostBytes));
-  path.erase(std::find(path.begin(), path.end(), '\n'), path.end());
-  return path;
+  GRAVURE_TRY(const std::string text, read_file(name, kMostBytes));
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string rest = text.substr(std::min(end + 1, text.size()));
+  return NotedProgram{.path = text.substr(0, end), .seal = rest.substr(0, rest.find('\n'))};
 }
 
 }  // namespace gravure::emulator

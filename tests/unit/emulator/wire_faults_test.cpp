@@ -49,7 +49,8 @@ TEST(BoardName, ReadsWhatItWrites) {
 
 TEST(BoardName, RefusesWhatIsNoOption) {
   for (const char* const text : {"", ",seed=1", "d,speed=1", "d,pace=fast", "d,capacity=63", "d,capacity=1k", "d,seed",
-                                 "d,fifo_bits=17", "d,serial=", "d,serial=a b", "d,seed_hz=0", "d,fault=fire"}) {
+                                 "d,fifo_bits=17", "d,serial=", "d,", "d,seed=1,", "d,,seed=1", "d,seed=1,seed=1",
+                                 "d,seed=1,fault=lost@line=2,seed=2", "d,serial=a b", "d,seed_hz=0", "d,fault=fire"}) {
     EXPECT_FALSE(parse_board_name(text)) << text;
   }
 }

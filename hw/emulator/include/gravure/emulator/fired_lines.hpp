@@ -26,10 +26,18 @@ Result<void> read_fired_lines(const std::string& folder, const std::function<Res
 /// What the board in a folder keeps there, whether it is there yet or not: nobody else may write these.
 std::vector<std::string> state_files(const std::string& folder);
 
+/// The program that a board ran.
+struct NotedProgram {
+  std::string path;
+  std::string seal;  ///< its program_seal() then; empty where it was noted without
+};
+
+/// CRC-32C, as text, of a program's first 512 bytes, which hold checksums of all the others. bad_file, io.
+Result<std::string> program_seal(const std::string& path);
 /// Notes which program the board in a folder runs, for whoever looks at what it fired; replaces what was noted before.
-/// io.
+/// bad_file, io.
 Result<void> note_program(const std::string& folder, const std::string& path);
 /// bad_file where none was noted.
-Result<std::string> noted_program(const std::string& folder);
+Result<NotedProgram> noted_program(const std::string& folder);
 
 }  // namespace gravure::emulator
