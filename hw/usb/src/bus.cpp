@@ -38,9 +38,11 @@ Error usb_error(const std::string& doing, int code) {
       return {ErrorCode::device,
               doing + ": the board was unplugged or has lost its power; its gate is dark. Plug it in again"};
     case LIBUSB_ERROR_ACCESS:
-      return {ErrorCode::device, doing +
-                                     ": permission denied; copy 70-gravure.rules (installed in share/gravure) to "
-                                     "/etc/udev/rules.d, run `udevadm control --reload`, plug the board in again"};
+      return {ErrorCode::device,
+              doing +
+                  ": permission denied; copy share/gravure/70-gravure.rules from where gravure is installed (below "
+                  "the prefix of cmake --install, /usr/local unless another was given) to "
+                  "/etc/udev/rules.d, run `udevadm control --reload`, plug the board in again"};
     case LIBUSB_ERROR_BUSY:
       return {ErrorCode::device, doing + ": another program uses the board; end that one first"};
     case LIBUSB_ERROR_PIPE:
