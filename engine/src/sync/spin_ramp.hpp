@@ -10,8 +10,8 @@
 
 namespace gravure::sync_plan {
 
-/// Where an axis comes to rest after a run of the board. In every place A and B are low: the pins of a counter that is
-/// loaded with 0 for the next run.
+/// Where an axis comes to rest after a run of the board. In every place the counter has gone whole A-B periods, so that
+/// the next run, before which the board keeps it, begins at 0 as it is counted.
 enum class Rest : std::uint8_t {
   next_period,  ///< the first A-B period there is: no run follows
   turn_back,    ///< a pass: where the spin-up of the next one, which goes back, begins

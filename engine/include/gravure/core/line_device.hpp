@@ -42,12 +42,12 @@ struct DeviceSetup {
   std::uint64_t fraction_num = 0;
   std::uint64_t fraction_den = 1;
   CarriageSetup carriage = {};
-  /// Axis 0 steps backwards: its pins A and B are exchanged, which the board takes with the counter's load, at 0. The
-  /// counter itself counts up all the same.
+  /// Axis 0 steps backwards: from the load on, the edges of A and B come in reverse order, from whatever the pins are;
+  /// to turn makes no edge. The load keeps the counter, which counts up all the same; only a reset clears it.
   bool backward = false;
   /// Run from rest before the first line of the run, which is at its end: as `schedule_increment` and
-  /// `schedule_seeds` take it, with `go` at its begin and its seed clocks in `first_tick`. Empty: the counter begins at
-  /// 0 with that line.
+  /// `schedule_seeds` take it, with `go` at its begin and its seed clocks in `first_tick`. Empty: edges are counted
+  /// from 0 with that line.
   std::vector<ScheduleSegment> spin_up = {};
   /// Run after the last line, to rest. Empty: the axis is stopped there by other means.
   std::vector<ScheduleSegment> spin_down = {};
