@@ -193,9 +193,9 @@ Result<void> PartRun::pack() {
   return {};
 }
 
-/// As much as the board has room for beside what is on its way; true where something went.
+/// As much as the board has room for beside what is on its way, or waits in it; true where something went.
 Result<bool> PartRun::send() {
-  const std::int64_t in_board = std::max(sent_bytes_ - taken_ * settings_.frame_bytes, level_bytes_);
+  const std::int64_t in_board = sent_bytes_ - executed_ * settings_.frame_bytes;
   const std::int64_t credit = std::max(settings_.capacity_bytes - in_board, std::int64_t{0});
   const std::span<const std::byte> rest = std::span(pending_).subspan(pending_sent_);
   const std::span<const std::byte> piece = rest.first(std::min(rest.size(), static_cast<std::size_t>(credit)));
@@ -244,7 +244,8 @@ Result<void> PartRun::take_status(const BoardStatus& status) {
     return device_error(fmt::format("the board says that it has taken {} lines and executed {}, {} were sent", taken,
                                     executed, sent_lines()));
   }
-  if (executed != executed_ || taken != taken_ || status.tick != tick_ || status.level_bytes != level_bytes_) {
+  // A clock that goes on is no movement by itself, but for the count to the first line.
+  if (executed != executed_ || taken != taken_ || status.level_bytes != level_bytes_) {
     last_moved_ = Clock::now();
   }
   executed_ = executed;
@@ -282,6 +283,10 @@ Result<void> PartRun::check_stall() {
   if (!waits_for_board_) {
     last_moved_ = std::max(last_moved_, Clock::now() - options_.stall / 2);
     return {};
+  }
+  const bool counts = started_ && executed_ == 0 && since_go() < seconds_of(settings_.sequence.first_tick);
+  if (counts) {
+    last_moved_ = Clock::now();
   }
   if (Clock::now() - last_moved_ < options_.stall) {
     return {};
@@ -381,8 +386,8 @@ Result<void> PartRun::wait_for_rest() {
 
 /// The gate first of all. Whatever goes wrong here, the watchdog of the board closes it.
 void PartRun::close_gate() {
-  const bool was_stopped = stopped_.has_value();
-  if (!write({{fpga::kControlRegister.address, axes_on()}}) || (started_ && !was_stopped && !settle())) {
+  gate_closed_ = write({{fpga::kControlRegister.address, axes_on()}}) || stopped_.has_value() || !started_;
+  if (!gate_closed_ || (started_ && !stopped_ && !settle())) {
     out_of_reach_ = true;
   }
 }
@@ -426,7 +431,15 @@ PartOutcome PartRun::conclude(Result<void> ran) {
 
 Error PartRun::describe(const Error& cause, const PartOutcome& outcome) const {
   const Plan& plan = program_.header().plan;
-  std::string text = cause.message + ": the gate is closed. ";
+  std::string text = cause.message;
+  if (gate_closed_) {
+    text += ": the gate is closed. ";
+  } else if (settings_.timing.silence_seeds != 0) {
+    text += fmt::format(": the board cannot be told to close its gate, it does so by itself within {:.3f} s. ",
+                        seconds_of(settings_.timing.silence_seeds).count());
+  } else {
+    text += ": the board cannot be told to close its gate; switch the laser off. ";
+  }
   if (!started_) {
     text += "Nothing was fired in this run";
   } else if (outcome.exact && outcome.executed == Place{}) {

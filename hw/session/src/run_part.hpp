@@ -106,6 +106,7 @@ class PartRun {
   std::optional<std::uint32_t> newest_;  ///< sequence of the last status
   bool started_ = false;                 ///< go was said, or may have been
   bool ran_ = false;                     ///< the board has said that lines run
+  bool gate_closed_ = false;             ///< it was told to, or has done so itself
   bool out_of_reach_ = false;
   bool power_lost_ = false;
   std::optional<BoardStatus> stopped_;  ///< by a fault

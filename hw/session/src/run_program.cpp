@@ -21,7 +21,12 @@ constexpr milliseconds kFirstStatus{2'000};
 /// The watchdog closes the gate after a tenth of a second without a word from the host.
 constexpr std::int64_t kSilenceParts = 10;
 
-/// What the board says of itself now; a gate that is open is closed first.
+/// Nothing runs, nor will by a go that was said before.
+bool at_rest(const BoardStatus& status) {
+  return status.state == BoardState::idle || status.state == BoardState::stopped;
+}
+
+/// What the board says of itself now; a gate that is open, or may open by itself, is closed first.
 Result<BoardStatus> settled_status(DeviceLink& link) {
   const auto until = std::chrono::steady_clock::now() + kFirstStatus;
   std::optional<BoardStatus> newest;
@@ -30,12 +35,12 @@ Result<BoardStatus> settled_status(DeviceLink& link) {
     GRAVURE_TRY(const std::optional<BoardStatus> status, link.next_status(milliseconds(newest ? 20 : 100)));
     if (status) {
       newest = status;
-    } else if (newest && newest->state != BoardState::running) {
+    } else if (newest && (at_rest(*newest) || (closed && newest->state == BoardState::filling))) {
       return *newest;
     } else {
       std::this_thread::sleep_for(milliseconds(1));
     }
-    if (newest && newest->state == BoardState::running && !closed) {
+    if (newest && !at_rest(*newest) && !closed) {
       GRAVURE_CHECK(link.write_register(fpga::kControlRegister.address, 0));
       closed = true;
     }

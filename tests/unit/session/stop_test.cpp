@@ -127,5 +127,102 @@ TEST(Stop, LetsTheScheduleOfTheStartEndByItself) {
   EXPECT_EQ(link.read_register(fpga::kControlRegister.address).value(), 0U);
 }
 
+/// A board whose stream breaks, and whose registers answer then or do not.
+class Stuck final : public DeviceLink {
+ public:
+  Stuck(EmulatedBoard board, bool answers) : link_(std::move(board)), answers_(answers) {}
+  const DeviceIdentity& identity() const noexcept override { return link_.identity(); }
+  Result<std::uint32_t> read_register(std::uint8_t address) override { return link_.read_register(address); }
+  Result<void> write_register(std::uint8_t address, std::uint32_t value) override {
+    if (failed_ && !answers_) {
+      return Error{ErrorCode::device, "gone"};
+    }
+    closed = closed || (failed_ && address == fpga::kControlRegister.address && (value & protocol::kControlRun) == 0);
+    return link_.write_register(address, value);
+  }
+  Result<std::size_t> send(std::span<const std::byte> stream, Milliseconds patience) override {
+    if (sent_ > 2'000) {
+      failed_ = true;
+      return Error{ErrorCode::device, "the stream broke"};
+    }
+    GRAVURE_TRY(const std::size_t taken, link_.send(stream, patience));
+    sent_ += taken;
+    return taken;
+  }
+  Result<bool> drain(Milliseconds patience) override { return link_.drain(patience); }
+  Result<void> abandon() override { return link_.abandon(); }
+  Result<std::optional<BoardStatus>> next_status(Milliseconds patience) override { return link_.next_status(patience); }
+  bool closed = false;
+
+ private:
+  EmulatedLink link_;
+  bool answers_;
+  bool failed_ = false;
+  std::size_t sent_ = 0;
+};
+
+TEST(Stop, SaysThatTheGateIsClosedOnlyWhereItIs) {
+  for (const bool answers : {true, false}) {
+    Dice dice(8);
+    Folder folder;
+    MemoryProgram program;
+    random_program(program, small_job(40), 33, 5, dice);
+    Stuck link(EmulatedBoard({.capacity_bytes = 500}), answers);
+    Notes notes;
+    const Result<RunReport> report = run_once(program, link, folder / "j", {}, notes);
+    ASSERT_TRUE(report) << report.error().message;
+    ASSERT_EQ(report.value().end, RunEnd::failed);
+    EXPECT_EQ(link.closed, answers);
+    EXPECT_EQ(report.value().exact, answers);
+    const std::string& message = report.value().error->message;
+    EXPECT_NE(message.find(answers ? "the stream broke: the gate is closed"
+                                   : "the board cannot be told to close its gate, it does so by itself within 0.100 s"),
+              std::string::npos)
+        << message;
+  }
+}
+
+/// Never more bytes on their way to the board, or in it, than it has room for.
+class Scales final : public DeviceLink {
+ public:
+  Scales(EmulatedBoard board, std::int64_t frame) : link_(std::move(board)), frame_(frame) {}
+  const DeviceIdentity& identity() const noexcept override { return link_.identity(); }
+  Result<std::uint32_t> read_register(std::uint8_t address) override { return link_.read_register(address); }
+  Result<void> write_register(std::uint8_t address, std::uint32_t value) override {
+    return link_.write_register(address, value);
+  }
+  Result<std::size_t> send(std::span<const std::byte> stream, Milliseconds patience) override {
+    EXPECT_LE(sent_ - executed_ * frame_ + static_cast<std::int64_t>(stream.size()), 500);
+    GRAVURE_TRY(const std::size_t taken, link_.send(stream, patience));
+    sent_ += static_cast<std::int64_t>(taken);
+    return taken;
+  }
+  Result<bool> drain(Milliseconds patience) override { return link_.drain(patience); }
+  Result<void> abandon() override { return link_.abandon(); }
+  Result<std::optional<BoardStatus>> next_status(Milliseconds patience) override {
+    GRAVURE_TRY(const std::optional<BoardStatus> status, link_.next_status(patience));
+    executed_ = status ? std::int64_t{status->executed_lines} : executed_;
+    return status;
+  }
+
+ private:
+  EmulatedLink link_;
+  std::int64_t frame_;
+  std::int64_t executed_ = 0;
+  std::int64_t sent_ = 0;
+};
+
+TEST(Stream, NeverHoldsMoreThanTheBoardHasRoomFor) {
+  Dice dice(9);
+  Folder folder;
+  MemoryProgram program;
+  random_program(program, small_job(40), 33, 5, dice);
+  Scales link(EmulatedBoard({.capacity_bytes = 500}), program.header.line_bytes() + 29);
+  Notes notes;
+  const Result<RunReport> report = run_once(program, link, folder / "j", {}, notes);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report.value().end, RunEnd::finished);
+}
+
 }  // namespace
 }  // namespace gravure::session::test

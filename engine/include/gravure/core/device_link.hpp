@@ -53,7 +53,8 @@ struct BoardStatus {
 /// docs/registers.md; the stream is that of docs/protocol.md. One thread at a time.
 ///
 /// Errors: device (refused, stalled, unplugged: the message says which), timeout, version_mismatch, io. A link that has
-/// failed once goes on failing; the board closes its gate by itself when its host is silent.
+/// failed once goes on failing, but for writes of registers where only a bulk endpoint has failed; the board closes its
+/// gate by itself when its host is silent.
 class DeviceLink {
  public:
   using Milliseconds = std::chrono::milliseconds;
