@@ -224,5 +224,53 @@ TEST(Stream, NeverHoldsMoreThanTheBoardHasRoomFor) {
   EXPECT_EQ(report.value().end, RunEnd::finished);
 }
 
+/// A board that does nothing more after a while, but for its clock.
+class Ticking final : public DeviceLink {
+ public:
+  explicit Ticking(EmulatedBoard board) : link_(std::move(board)) {}
+  const DeviceIdentity& identity() const noexcept override { return link_.identity(); }
+  Result<std::uint32_t> read_register(std::uint8_t address) override { return link_.read_register(address); }
+  Result<void> write_register(std::uint8_t address, std::uint32_t value) override {
+    return link_.write_register(address, value);
+  }
+  Result<std::size_t> send(std::span<const std::byte> stream, Milliseconds patience) override {
+    return last_ ? Result<std::size_t>(std::size_t{0}) : link_.send(stream, patience);
+  }
+  Result<bool> drain(Milliseconds patience) override { return link_.drain(patience); }
+  Result<void> abandon() override { return link_.abandon(); }
+  Result<std::optional<BoardStatus>> next_status(Milliseconds patience) override {
+    if (last_) {
+      ++last_->sequence;
+      last_->tick += 1'000;
+      return last_;
+    }
+    GRAVURE_TRY(const std::optional<BoardStatus> status, link_.next_status(patience));
+    if (status && status->state == BoardState::running && status->executed_lines > 20) {
+      last_ = status;
+    }
+    return status;
+  }
+
+ private:
+  EmulatedLink link_;
+  std::optional<BoardStatus> last_;
+};
+
+TEST(Stream, FindsABoardStalledThoughItsClockGoesOn) {
+  Dice dice(10);
+  Folder folder;
+  MemoryProgram program;
+  random_program(program, small_job(40), 33, 5, dice);
+  Ticking link(EmulatedBoard({.capacity_bytes = 500}));
+  Notes notes;
+  RunOptions options;
+  options.stall = std::chrono::milliseconds(250);
+  const Result<RunReport> report = run_once(program, link, folder / "j", options, notes);
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_EQ(report.value().end, RunEnd::failed);
+  const std::string& message = report.value().error->message;
+  EXPECT_NE(message.find("neither takes nor executes"), std::string::npos) << message;
+}
+
 }  // namespace
 }  // namespace gravure::session::test
