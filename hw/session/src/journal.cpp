@@ -345,7 +345,9 @@ Result<void> Journal::acknowledged(const Acknowledged& now) {
                     next.number, now_text(), now.executed_line, now.accepted_line, now.sent_line, now.sent_limit));
     return store_->update(next);
   });
-  GRAVURE_CHECK(on_disk);
+  if (!on_disk) {
+    return on_disk.error();
+  }
   store_->keep(std::move(next));
   return {};
 }
@@ -360,7 +362,9 @@ Result<void> Journal::ended(AttemptState state, Place executed, std::int64_t sen
     GRAVURE_CHECK(store_->run("UPDATE attempt SET ended = ?, why = ? WHERE number = ?", now_text(), why, next.number));
     return store_->add_event("end", why);
   });
-  GRAVURE_CHECK(on_disk);
+  if (!on_disk) {
+    return on_disk.error();
+  }
   store_->keep(std::move(next));
   return {};
 }
@@ -402,7 +406,9 @@ Result<void> Journal::finish() {
                                                                     "known to be fired",
                                                                     skipped));
   });
-  GRAVURE_CHECK(on_disk);
+  if (!on_disk) {
+    return on_disk.error();
+  }
   store_->finished_ = true;
   return {};
 }

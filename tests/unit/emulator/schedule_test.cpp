@@ -158,11 +158,11 @@ TEST(Schedule, LeavesTheEmulatedAxisWhereTheRuleDoesAtTickZeroAndLater) {
       ticks += 2 * segment.seeds;
     }
     const ScheduleEnd end = run_schedule(schedule, registers, 2);
-    const std::uint64_t before = ruled_edges(registers, schedule, ticks, 0, 0).size();
+    const auto before = static_cast<std::int64_t>(ruled_edges(registers, schedule, ticks, 0, 0).size());
     ASSERT_EQ(state_of(end, registers).edges, before);
     for (const std::uint64_t later : {std::uint64_t{0}, 1 + rng() % 10, rng() % 5000}) {
       ASSERT_EQ(axis_after(end, registers, static_cast<std::int64_t>(later)).edges + before,
-                ruled_edges(registers, schedule, ticks + later, 0, 0).size())
+                static_cast<std::int64_t>(ruled_edges(registers, schedule, ticks + later, 0, 0).size()))
           << "trial " << trial << ", tick " << later;
     }
   }
