@@ -54,8 +54,8 @@ std::string help_of(const CLI::App& app) {
   return "gravure " + verbs + "--help";
 }
 
-/// The verb that was given, as deep as it goes: "motion" and "texture" have verbs of their own. The parser takes an unknown one for a
-/// missing one.
+/// The verb that was given, as deep as it goes: "motion" and "texture" have verbs of their own. The parser takes an
+/// unknown one for a missing one.
 const CLI::App& given_verb(const CLI::App& app, const std::vector<std::string>& arguments) {
   const CLI::App* level = &app;
   for (const std::string& argument : arguments) {

@@ -139,7 +139,8 @@ TEST(ErrorBound, HoldsEveryPulseAndIsWithinItsFactorForEachTermAndForAll) {
       ASSERT_GT(sums.pulses, 0);
       ASSERT_LE(most, bound * (1 + 1e-9) + 1e-9) << "term " << term << ", " << mode_name(job.mode);
       // What the first pulses of helical lines may be off by is in the bound alone.
-      ASSERT_LE(bound - model.late_shift_um(), most * kBoundFactor + 1e-6) << "term " << term << ", " << mode_name(job.mode);
+      ASSERT_LE(bound - model.late_shift_um(), most * kBoundFactor + 1e-6)
+          << "term " << term << ", " << mode_name(job.mode);
       if (most > 1e-6) {
         widest[term] = std::max(widest[term], bound / most);
       }

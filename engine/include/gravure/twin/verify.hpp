@@ -88,10 +88,11 @@ struct VerifyOptions {
 /// Runs every line of every revolution through devices made by `devices`, puts what the gate let through back to pixels
 /// and compares it with `images` (none: said as a violation), and the axis at each line start with the plan's turning.
 /// The wanted turning comes from the plan's geometry (lines, slots, encoder, gear), not from its A-B solution.
-/// The set-points that a program stores are held against its plan's, each. With `budget`, the landing of the pulses is bounded and sampled as error_budget() does and judged by its limits.
-/// Violations are reported, not errors; errors are an unreadable program, a memory budget too small for one worker (out
-/// of range, naming what is needed) and cancellation. An image that cannot be read is a violation, too, and all others
-/// are still compared. `programs` opens the program once for each worker; fewer run where memory does not suffice.
+/// The set-points that a program stores are held against its plan's, each. With `budget`, the landing of the pulses is
+/// bounded and sampled as error_budget() does and judged by its limits. Violations are reported, not errors; errors are
+/// an unreadable program, a memory budget too small for one worker (out of range, naming what is needed) and
+/// cancellation. An image that cannot be read is a violation, too, and all others are still compared. `programs` opens
+/// the program once for each worker; fewer run where memory does not suffice.
 Result<VerifyReport> verify(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,
                             const DeviceFactory& devices, const LayerLinesFactory& images,
                             const VerifyOptions& options);
