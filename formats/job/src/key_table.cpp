@@ -82,6 +82,7 @@ constexpr std::string_view kOneOfPitches = "one of line_pitch_um, lines_per_revo
 constexpr std::string_view kOneOfImages = "one of files, depth_map";
 constexpr std::string_view kBiggestHz = "10_000_000_000";
 constexpr std::string_view kUnchecked = "not checked";
+constexpr std::string_view kNoRelief = "none: relief in pulses";
 constexpr std::string_view kMostJerk = "1_000_000_000_000_000_000";  // as the machine file has it
 constexpr std::string_view kMostAcceleration = "1_000_000_000_000";
 constexpr std::string_view kMostSpeed = "1_000_000_000";
@@ -101,6 +102,14 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.laser.pulse_divider = v.integer; }),
     integer("laser", "max_pulse_on_demand_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.laser.max_pulse_on_demand_hz = v.integer; }),
+    decimal("laser", "spot_um", "um", "0.01", "10_000", kNoRelief,
+            [](Job& j, const Value& v) { j.laser.spot_um = v.number; }),
+    decimal("laser", "fluence_j_cm2", "J/cm^2", kLeastMotion, "1_000_000", kNoRelief,
+            [](Job& j, const Value& v) { j.laser.fluence_j_cm2 = v.number; }),
+    decimal("laser", "threshold_j_cm2", "J/cm^2", kLeastMotion, "1_000_000", kNoRelief,
+            [](Job& j, const Value& v) { j.laser.threshold_j_cm2 = v.number; }),
+    decimal("laser", "penetration_nm", "nm", "0.001", "1_000_000", kNoRelief,
+            [](Job& j, const Value& v) { j.laser.penetration_nm = v.number; }),
 
     integer("fpga", "clock_multiplier", "FPGA ticks per seed pulse", "1", "16", kRequired,
             [](Job& j, const Value& v) { j.fpga.clock_multiplier = v.integer; }),

@@ -41,6 +41,7 @@ TEST(Job, HoldsEveryValueOfTheSample) {
   EXPECT_EQ(job.laser.seed_hz, 82'000'000);
   EXPECT_EQ(job.laser.pulse_divider, 41);
   EXPECT_EQ(job.laser.max_pulse_on_demand_hz, 16'400'000);
+  EXPECT_FALSE(job.laser.spot_um || job.laser.fluence_j_cm2 || job.laser.threshold_j_cm2 || job.laser.penetration_nm);
   EXPECT_EQ(job.fpga.clock_multiplier, 2);
   EXPECT_EQ(job.fpga.counter_bits, 32);
   EXPECT_FALSE(job.fpga.fractional);
@@ -80,6 +81,10 @@ mode = "rotary"
 seed_hz = 5_125_000
 pulse_divider = 3
 max_pulse_on_demand_hz = 7
+spot_um = 12.5
+fluence_j_cm2 = 2.25
+threshold_j_cm2 = 0.5
+penetration_nm = 30
 [fpga]
 clock_multiplier = 4
 counter_bits = 64
@@ -116,6 +121,10 @@ seam_um = 1
   ASSERT_TRUE(result) << result.error().message;
   const Job& job = result.value();
   EXPECT_EQ(job.title, "");
+  EXPECT_EQ(job.laser.spot_um, Rational(25, 2));
+  EXPECT_EQ(job.laser.fluence_j_cm2, Rational(9, 4));
+  EXPECT_EQ(job.laser.threshold_j_cm2, Rational(1, 2));
+  EXPECT_EQ(job.laser.penetration_nm, 30);
   EXPECT_TRUE(job.fpga.fractional);
   EXPECT_EQ(job.fpga.max_prescaler, 9U);
   EXPECT_EQ(job.scanner.max_extra_slots, 13);
