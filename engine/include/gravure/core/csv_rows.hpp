@@ -9,7 +9,7 @@
 
 namespace gravure {
 
-inline constexpr std::size_t kMostCsvColumns = 6;
+inline constexpr std::size_t kMostCsvColumns = 7;
 
 /// What the columns of a CSV text mean, for messages.
 struct CsvColumns {
