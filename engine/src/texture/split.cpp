@@ -42,6 +42,17 @@ class Sample {
 
 }  // namespace
 
+std::vector<double> pulse_lengths_mm(const TexturePath& path, std::span<const SurfacePoint> targets) {
+  if (!path.pulse_mm.empty()) {
+    return path.pulse_mm;
+  }
+  std::vector<double> lengths(targets.size());
+  for (std::size_t i = 1; i < targets.size(); ++i) {
+    lengths[i] = lengths[i - 1] + (targets[i].position_mm - targets[i - 1].position_mm).norm();
+  }
+  return lengths;
+}
+
 Result<Split> split_path(const Surface& surface, const TexturePath& path, const GaussianFilter& filter) {
   Split split;
   split.sigma_mm = filter.sigma_mm;

@@ -28,7 +28,13 @@ struct Split {
 struct TexturePath {
   std::vector<Vector2> points_mm;
   double step_mm = 0;
+  /// Length by which pulses are placed, at each point, the same at both ends of a dark step; never falls. Empty: the
+  /// length of the path on the surface, lit all along.
+  std::vector<double> pulse_mm = {};
 };
+
+/// TexturePath::pulse_mm, or what stands for it where it is empty; `targets` are the points on the surface.
+std::vector<double> pulse_lengths_mm(const TexturePath& path, std::span<const SurfacePoint> targets);
 
 /// Splits by one sigma (filter.sigma_mm). Errors as slow_part() and Surface::project().
 Result<Split> split_path(const Surface& surface, const TexturePath& path, const GaussianFilter& filter);

@@ -32,4 +32,7 @@ class Surface {
 /// Slopes are central differences of fourth order. bad_argument, with the place, for what does not parse.
 Result<std::unique_ptr<Surface>> expression_surface(const std::string& expression);
 
+/// The same surface; project() fails with out_of_range, naming point and slope, where it is steeper.
+std::unique_ptr<Surface> limit_slope(std::unique_ptr<Surface> surface, double most_rad);
+
 }  // namespace gravure::texture
