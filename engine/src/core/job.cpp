@@ -10,6 +10,10 @@ std::string_view mode_name(Mode mode) {
       return "helical";
     case Mode::flat:
       return "flat";
+    case Mode::freeform:
+      return "freeform";
+    case Mode::zones:
+      return "zones";
   }
   return "";
 }

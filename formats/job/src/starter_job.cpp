@@ -136,6 +136,9 @@ std::string starter_job(Mode mode) {
       return joined({kHead, kHelicalJob, kMachine, kRotary, kCarriage, kHelicalImage, kLimits});
     case Mode::flat:
       return joined({kHead, kFlatJob, kMachine, kField, kStage, kFlatImage, kLimits});
+    case Mode::freeform:  // other files, other readers
+    case Mode::zones:
+      break;
   }
   return {};
 }

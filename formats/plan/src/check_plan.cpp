@@ -3,40 +3,14 @@
 #include <optional>
 #include <string>
 
+#include "check_path.hpp"
+#include "complaint.hpp"
 #include "gravure/core/board_runs.hpp"
 #include "gravure/core/exposure_map.hpp"
 #include "gravure/core/spin_phase.hpp"
 
 namespace gravure::plan_json {
 namespace {
-
-/// Keeps the first complaint.
-class Complaint {
- public:
-  void unless(bool fine, const std::string& key, const std::string& problem) {
-    if (!fine && !error_) {
-      error_ = Error{ErrorCode::bad_file, "plan: " + key + " " + problem};
-    }
-  }
-  void least_one(const std::string& key, const Integer& value) {
-    unless(value >= 1, key, "= " + to_string(value) + ": must be at least 1");
-  }
-  void positive(const std::string& key, const Rational& value) {
-    unless(value > 0, key, "= " + to_string(value).substr(0, kShown) + ": must be greater than 0");
-  }
-  /// A figure that follows from the others.
-  void equal(const std::string& key, const Rational& value, const Rational& expected) {
-    unless(value == expected, key,
-           "= " + to_string(value).substr(0, kShown) + ": the rest of the plan gives " +
-               to_string(expected).substr(0, kShown));
-  }
-  Result<void> result() const { return error_ ? Result<void>(*error_) : Result<void>(); }
-  bool none() const { return !error_; }
-
- private:
-  static constexpr std::size_t kShown = 80;
-  std::optional<Error> error_;
-};
 
 void check_counter(const AbPlan& ab, const std::string& section, Complaint& complaint) {
   complaint.least_one(section + "prescaler", ab.prescaler);
@@ -47,6 +21,8 @@ void check_counter(const AbPlan& ab, const std::string& section, Complaint& comp
 
 /// What later checks, and everybody else, divide by or shift by.
 void check_divisors(const Plan& plan, Complaint& complaint) {
+  complaint.unless(plan.path.has_value() == follows_path(plan.mode), "path",
+                   "must be there in the modes that follow a path, and in no other");
   complaint.least_one("clock.seed_hz", plan.clock.seed_hz);
   complaint.least_one("clock.fpga_hz", plan.clock.fpga_hz);
   complaint.least_one("clock.pulse_divider", plan.clock.pulse_divider);
@@ -56,6 +32,12 @@ void check_divisors(const Plan& plan, Complaint& complaint) {
   complaint.least_one("line.slots_per_microvector", plan.line.slots_per_microvector);
   complaint.positive("line.pixel_pitch_um", plan.line.pixel_pitch_um);
   complaint.least_one("rotary.lines_per_revolution", plan.rotary.lines_per_revolution);
+  complaint.least_one("job.revolutions", plan.job.revolutions);
+  complaint.unless(plan.carriage.has_value() == (plan.mode == Mode::helical), "carriage",
+                   "must be there in helical mode, and in no other");
+  if (plan.path) {
+    return;
+  }
   complaint.positive("rotary.circumference_um", plan.rotary.circumference_um);
   if (plan.mode == Mode::flat) {
     complaint.positive("stage.encoder_pitch_um", plan.rotary.encoder_pitch_um);
@@ -66,9 +48,6 @@ void check_divisors(const Plan& plan, Complaint& complaint) {
   complaint.least_one("rotary.gear_encoder_turns", plan.rotary.gear_encoder_turns);
   complaint.least_one("rotary.gear_workpiece_turns", plan.rotary.gear_workpiece_turns);
   check_counter(plan.ab, "ab.", complaint);
-  complaint.least_one("job.revolutions", plan.job.revolutions);
-  complaint.unless(plan.carriage.has_value() == (plan.mode == Mode::helical), "carriage",
-                   "must be there in helical mode, and in no other");
   complaint.unless(!plan.bands || plan.mode != Mode::helical, "bands", "are none in helical mode");
   if (plan.carriage) {
     complaint.positive("carriage.feed_pixels", plan.carriage->feed_pixels);
@@ -338,6 +317,10 @@ Result<void> check_plan(const Plan& plan) {
   part([&] { check_divisors(plan, complaint); });
   part([&] { check_clock(plan.clock, complaint); });
   part([&] { check_line(plan, complaint); });
+  if (plan.path) {
+    part([&] { check_path(plan, complaint); });
+    return complaint.result();
+  }
   part([&] { check_rotary(plan, complaint); });
   if (plan.carriage) {
     part([&] { check_carriage(plan, complaint); });

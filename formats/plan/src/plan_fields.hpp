@@ -148,6 +148,48 @@ void describe_scanner(Archive& archive, P& scanner) {
 }
 
 template <class Archive, class P>
+void describe_path_axis(Archive& archive, P& axis, bool linear) {
+  archive.field(linear ? "counts_per_mm" : "counts_per_rad", axis.counts_per_unit);
+  archive.field(linear ? "max_speed_mm_s" : "max_speed_deg_s", axis.limits.max_speed);
+  archive.field(linear ? "max_acceleration_mm_s2" : "max_acceleration_deg_s2", axis.limits.max_acceleration);
+  archive.field(linear ? "max_jerk_mm_s3" : "max_jerk_deg_s3", axis.limits.max_jerk);
+  archive.field(linear ? "least_mm" : "least_deg", axis.least);
+  archive.field(linear ? "most_mm" : "most_deg", axis.most);
+}
+
+/// `rotary` counts the lines, which here are the periods of the servo.
+template <class Archive, class P, class R>
+void describe_path(Archive& archive, P& path, R& rotary) {
+  archive.field("periods", rotary.lines_per_revolution);
+  archive.field("ticks", rotary.ticks_per_revolution);
+  archive.field("pulses", path.pulses);
+  archive.field("targets", path.targets);
+  archive.field("along_counts_per_mm", path.along_counts_per_mm);
+  archive.section("axes", [&] {
+    for (std::size_t i = 0; i < kPathAxes.size(); ++i) {
+      const bool linear = kPathAxes[i] != "A" && kPathAxes[i] != "C";
+      archive.section(kPathAxes[i].data(), [&] { describe_path_axis(archive, path.axes[i], linear); });
+    }
+  });
+  archive.optional_section("picture", path.picture, [&](auto& picture) {
+    archive.field("width", picture.width);
+    archive.field("height", picture.height);
+  });
+  archive.field("max_focus_offset_um", path.max_focus_offset_um);
+  archive.field("max_incidence_deg", path.max_incidence_deg);
+  archive.field("max_displacement_mm", path.max_displacement_mm);
+  archive.field("max_landing_um", path.max_landing_um);
+  archive.field("machine", path.machine);
+  archive.section("rotary_centre", [&] {
+    archive.field("x_mm", path.rotary_centre_mm[0]);
+    archive.field("y_mm", path.rotary_centre_mm[1]);
+    archive.field("z_mm", path.rotary_centre_mm[2]);
+  });
+  archive.field("surface", path.surface);
+  archive.field("texture", path.texture);
+}
+
+template <class Archive, class P>
 void describe_job(Archive& archive, P& job) {
   archive.field("revolutions", job.revolutions);
   archive.field("ticks", job.ticks);
@@ -160,12 +202,16 @@ void describe_plan(Archive& archive, P& plan) {
   archive.field("mode", plan.mode);
   archive.section("clock", [&] { describe_clock(archive, plan.clock); });
   archive.section("line", [&] { describe_line(archive, plan.line); });
-  if (plan.mode == Mode::flat) {
-    archive.section("stage", [&] { describe_stage(archive, plan.rotary); });
+  if (follows_path(plan.mode)) {
+    archive.optional_section("path", plan.path, [&](auto& path) { describe_path(archive, path, plan.rotary); });
   } else {
-    archive.section("rotary", [&] { describe_rotary(archive, plan.rotary); });
+    if (plan.mode == Mode::flat) {
+      archive.section("stage", [&] { describe_stage(archive, plan.rotary); });
+    } else {
+      archive.section("rotary", [&] { describe_rotary(archive, plan.rotary); });
+    }
+    archive.section("ab", [&] { describe_ab(archive, plan.ab); });
   }
-  archive.section("ab", [&] { describe_ab(archive, plan.ab); });
   archive.optional_section("spin", plan.spin,
                            [&](auto& spin) { describe_spin(archive, spin, plan.mode == Mode::flat); });
   archive.optional_section("carriage", plan.carriage, [&](auto& carriage) { describe_carriage(archive, carriage); });

@@ -11,7 +11,11 @@ struct ModeName {
   Mode mode;
   std::string_view name;
 };
-inline constexpr ModeName kModeNames[] = {{Mode::rotary, "rotary"}, {Mode::helical, "helical"}, {Mode::flat, "flat"}};
+inline constexpr ModeName kModeNames[] = {{Mode::rotary, "rotary"},
+                                          {Mode::helical, "helical"},
+                                          {Mode::flat, "flat"},
+                                          {Mode::freeform, "freeform"},
+                                          {Mode::zones, "zones"}};
 
 /// 2^53: up to it every integer is a double, so every JSON reader keeps it.
 inline constexpr std::int64_t kLargestJsonInteger = std::int64_t{1} << 53;

@@ -15,9 +15,14 @@ namespace gravure {
 /// What the user wants, as the job file says it: values checked one by one, not yet against each other (make_plan
 /// does). docs/formats/job.md explains every field; names and units are those of the file.
 
-enum class Mode : std::uint8_t { rotary, helical, flat };
-/// "rotary", "helical", "flat", as the job file says it.
+enum class Mode : std::uint8_t { rotary, helical, flat, freeform, zones };
+/// "rotary", "helical", "flat", "freeform", "zones", as the job file says it.
 std::string_view mode_name(Mode mode);
+
+/// Seven axes follow a path; nothing turns with the lines, which are servo periods (PathPlan).
+constexpr bool follows_path(Mode mode) {
+  return mode == Mode::freeform || mode == Mode::zones;
+}
 
 struct LaserSettings {
   std::int64_t seed_hz = 0;

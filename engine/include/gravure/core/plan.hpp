@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include "gravure/core/exact.hpp"
 #include "gravure/core/job.hpp"
+#include "gravure/core/path_motion.hpp"
 
 namespace gravure {
 
@@ -160,6 +162,42 @@ struct ScannerPlan {
 /// A field grid in a plan has at most so many bytes: a program carries it.
 inline constexpr std::size_t kMostPlanGridBytes = std::size_t{1} << 19U;
 
+/// An axis of a path program. Set-points are integers: counts = position * counts_per_unit, rounded, with positions in
+/// mm and, for A and C, rad. Limits and range are mm and degrees, as everywhere.
+struct PathAxisPlan {
+  Rational counts_per_unit = 0;
+  AxisLimits limits;
+  std::optional<Rational> least;  ///< travel; absent: not checked. U, V: the scan field
+  std::optional<Rational> most;
+};
+
+/// A bitmap whose pixels are the pulses of the path, in order: row after row, even rows left to right, odd ones back.
+struct PathPicture {
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+};
+
+/// A program that follows a path (freeform, zones): one revolution whose lines are the servo periods, line.slots pulse
+/// slots each, all of them in the marking window, all run the same way. There is a set-point of all axes at the start
+/// of every line and one at the end of the last, between which axes move as cubic_between() (core/path_expand.hpp)
+/// says. line.pixel_pitch_um is the pitch of the pulses along the path. No A-B axis turns: of `rotary` there are
+/// lines_per_revolution and ticks_per_revolution alone, and nothing of `ab`.
+struct PathPlan {
+  std::array<PathAxisPlan, kPathAxes.size()> axes;
+  Rational along_counts_per_mm = 0;  ///< of the length of path covered, stored beside the axes
+  std::int64_t pulses = 0;           ///< along the path, fired or not
+  std::int64_t targets = 0;          ///< points of the wanted path that the program stores; 0: none
+  std::optional<PathPicture> picture;
+  std::optional<Rational> max_focus_offset_um;  ///< of every fired pulse; absent: not judged
+  std::optional<Rational> max_incidence_deg;
+  std::optional<Rational> max_displacement_mm;  ///< of the galvo from the centre of its field
+  std::optional<Rational> max_landing_um;       ///< from the point on the wanted path where the pulse belongs
+  std::string machine;  ///< signs of A and C: "texturing" or "post_processor" (docs/kinematics.md)
+  std::array<Rational, 3> rotary_centre_mm{};  ///< where A and C meet, in the frame of the workpiece
+  std::string surface;                         ///< what the job says of it, for people
+  std::string texture;
+};
+
 struct JobPlan {
   std::int64_t revolutions = 0;
   std::int64_t ticks = 0;
@@ -177,6 +215,7 @@ struct Plan {
   std::optional<CarriagePlan> carriage;  ///< helical mode
   std::optional<BandsPlan> bands;        ///< none: the image fits the field
   std::optional<ScannerPlan> scanner;    ///< none: the job does not say how large the field is
+  std::optional<PathPlan> path;          ///< freeform and zones
   JobPlan job;
   std::vector<std::string> warnings;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -54,6 +55,26 @@ inline std::vector<LineSetPoints> kinds_of_lines(const Plan& plan) {
   return kinds;
 }
 
+/// Where the axes of a path program are ordered to stand at the start of a line, in the counts of the plan's path.
+struct PathSetPoint {
+  std::array<std::int64_t, kPathAxes.size()> counts{};
+  std::int64_t along_counts = 0;
+
+  friend bool operator==(const PathSetPoint&, const PathSetPoint&) = default;
+};
+
+/// A point of the path that the light is wanted on, in the frame of the workpiece; straight between two of them.
+struct PathTarget {
+  double along_mm = 0;  ///< never less than the one before
+  std::array<double, 3> position_mm{};
+  std::array<double, 3> normal{0, 0, 1};  ///< of the surface, towards the head, length 1
+};
+
+/// Set-points of a path program: one at the start of each line and one at the end of the last; 0 for other programs.
+inline std::int64_t set_points_of(const Plan& plan) {
+  return plan.path ? plan.rotary.lines_per_revolution + 1 : 0;
+}
+
 /// Everything in a program but the bits of its lines.
 struct ProgramHeader {
   static constexpr std::uint32_t kFormatVersion = 1;
@@ -98,6 +119,14 @@ class LineSink {
   /// layer.
   virtual Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const = 0;
   virtual Result<void> put(const StoredChunk& chunk) = 0;
+  /// Path programs: the set-points and the wanted points that follow those put before. finish() refuses a program in
+  /// which their number is not the plan's.
+  virtual Result<void> put_set_points(std::span<const PathSetPoint> /*next*/) {
+    return Error{ErrorCode::bad_argument, "this sink takes no programs that follow a path"};
+  }
+  virtual Result<void> put_targets(std::span<const PathTarget> /*next*/) {
+    return Error{ErrorCode::bad_argument, "this sink takes no programs that follow a path"};
+  }
   /// Writes the header (now complete, with fired pixels) and puts the file in its place.
   virtual Result<void> finish(const ProgramHeader& header) = 0;
 };
@@ -111,6 +140,14 @@ class LineSource {
   virtual Result<StoredChunk> fetch(ChunkAddress address) = 0;
   /// Verifies the checksum and unpacks; `out` takes the chunk's lines. bad_file names the chunk's address.
   virtual Result<void> decode(const StoredChunk& chunk, std::span<std::byte> out) const = 0;
+  /// Path programs: set-points (set_points_of() in all) and wanted points (plan.path->targets) from `first` on into
+  /// all of `out`, checksums verified; one caller at a time, with fetch(), cheapest in order.
+  virtual Result<void> read_set_points(std::int64_t /*first*/, std::span<PathSetPoint> /*out*/) {
+    return Error{ErrorCode::bad_argument, "this source has no set-points of a path"};
+  }
+  virtual Result<void> read_targets(std::int64_t /*first*/, std::span<PathTarget> /*out*/) {
+    return Error{ErrorCode::bad_argument, "this source has no points of a path"};
+  }
 };
 
 }  // namespace gravure
