@@ -1,12 +1,18 @@
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <string>
 #include <vector>
 
+#include "log.hpp"
 #include "motion_command.hpp"
 #include "texture_command.hpp"
 #include "verb.hpp"
@@ -36,7 +42,7 @@ void watch_signals() {
 }
 
 int report(const Error& error, bool json) {
-  std::fprintf(stderr, "gravure: error: %s\n", gravure::cli::printable(error.message).c_str());
+  gravure::cli::log(gravure::cli::LogLevel::error, error.message);
   if (json) {
     gravure::cli::print_json({{"error", {{"code", gravure::error_code_name(error.code)}, {"message", error.message}}}});
   }
@@ -99,6 +105,21 @@ bool wants_json(const std::vector<std::string>& arguments) {
   return std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
 }
 
+/// Why nothing more can be printed, after a failed write to standard output.
+Error output_error() {
+  const std::string why = errno == EPIPE ? "whoever reads it has closed it before all was written"
+                                         : std::string("cannot write: ") + std::strerror(errno);
+  return {gravure::ErrorCode::io, "standard output: " + why};
+}
+
+void log_end(int status, double seconds) {
+  struct rusage used = {};
+  getrusage(RUSAGE_SELF, &used);
+  gravure::cli::log(gravure::cli::LogLevel::debug, "exit status " + std::to_string(status) + " after " +
+                                                       std::to_string(seconds) + " s, at most " +
+                                                       std::to_string(used.ru_maxrss / 1024) + " MiB of memory");
+}
+
 int run(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   if (wants_json(arguments)) {
@@ -130,22 +151,27 @@ int run(int argc, char** argv) {
   gravure::cli::add_devices(app, command);
   gravure::cli::add_motion_command(app, command);
   gravure::cli::add_texture(app, command);
+  gravure::cli::add_completion(app, command);
+  gravure::cli::add_man(app, command);
+  gravure::cli::add_log_level(app);  // after all verbs: each gets it
   try {
     refuse_ambiguous(app, arguments);
     app.parse(argc, argv);
   } catch (const CLI::Success& shown) {  // --help, --version
     app.exit(shown);
-    return std::cout.flush() ? 0 : report({gravure::ErrorCode::io, "standard output: cannot write"}, false);
+    return std::cout.flush() ? 0 : report(output_error(), false);
   } catch (const CLI::ParseError& error) {
     const bool no_verb = std::string(error.what()) == "A subcommand is required";
     const std::string what = no_verb ? "a verb is missing" : error.what();
     return report({gravure::ErrorCode::bad_argument, what + "; see " + help_of(app)}, wants_json(arguments));
   }
+  const auto start = std::chrono::steady_clock::now();
   const Result<int> result = command.run();
   const int status = result ? result.value() : report(result.error(), command.json);
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    return report({gravure::ErrorCode::io, "standard output: cannot write"}, false);
+    return report(output_error(), false);
   }
+  log_end(status, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return status;
 }
 

@@ -11,6 +11,7 @@
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/session/run.hpp"
+#include "log.hpp"
 #include "open_device.hpp"
 #include "program_files.hpp"
 #include "verb.hpp"
@@ -44,7 +45,7 @@ class RunProgress final : public session::RunObserver {
   void on_counts(const RunCounts& counts) override {
     const auto now = std::chrono::steady_clock::now();
     const auto least = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10'000);
-    if (counts.total <= 0 || now - shown_ < least) {
+    if (counts.total <= 0 || now - shown_ < least || !is_logged(LogLevel::info)) {
       return;
     }
     shown_ = now;
@@ -52,7 +53,7 @@ class RunProgress final : public session::RunObserver {
     const std::string text = fmt::format("{:5.1f} %: {} sent, {} accepted, {} executed of {} lines", 100 * share,
                                          counts.sent, counts.accepted, counts.executed, counts.total);
     if (!terminal_) {
-      std::fprintf(stderr, "gravure: %s\n", text.c_str());
+      log(LogLevel::info, text);
       return;
     }
     constexpr std::size_t kWidth = 24;
@@ -63,7 +64,7 @@ class RunProgress final : public session::RunObserver {
   }
   void on_note(const std::string& text) override {
     clear();
-    std::fprintf(stderr, "gravure: %s\n", printable(text).c_str());
+    log(LogLevel::info, text);
   }
 
  private:
@@ -218,7 +219,7 @@ Result<int> run(const Options& options, const Command& command) {
   }
   const DeviceIdentity& identity = device.link->identity();
   if (report->error) {
-    std::fprintf(stderr, "gravure: error: %s\n", printable(report->error->message).c_str());
+    log(LogLevel::error, report->error->message);
   }
   if (command.json) {
     print_json(report_json(options, plan, identity, journal, *report));

@@ -125,7 +125,7 @@ Result<int> run(const Options& options, const Command& command) {
   }
   std::vector<std::int64_t> fired(static_cast<std::size_t>(options.levels));
   constexpr std::int64_t kOpenAtOnce = 64;  // files; the map is read once for each such group
-  ProgressBar bar("slice");
+  ProgressBar bar("slice", "layers");
   for (std::int64_t first = 0; first < options.levels; first += kOpenAtOnce) {
     const std::int64_t count = std::min(kOpenAtOnce, options.levels - first);
     GRAVURE_CHECK(slice_levels(options, stack, info, files, first, count, fired));

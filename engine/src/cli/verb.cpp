@@ -4,7 +4,8 @@
 
 #include <atomic>
 #include <cstdio>
-#include <utility>
+
+#include "log.hpp"
 
 namespace gravure::cli {
 
@@ -60,7 +61,7 @@ void print_json(const Json& document) {
 }
 
 void warn(const std::string& text) {
-  std::fprintf(stderr, "gravure: warning: %s\n", printable(text).c_str());
+  log(LogLevel::warning, text);
 }
 
 Json json_integer(const Integer& value) {
@@ -130,31 +131,6 @@ std::string printable(std::string_view text) {
     }
   }
   return shown;
-}
-
-ProgressBar::ProgressBar(std::string what) : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1) {}
-
-ProgressBar::~ProgressBar() {
-  if (drawn_) {
-    std::fputs("\r\033[K", stderr);
-  }
-}
-
-void ProgressBar::update(std::int64_t done, std::int64_t total) {
-  if (!terminal_ || total <= 0) {
-    return;
-  }
-  const int permille = static_cast<int>(static_cast<double>(done) / static_cast<double>(total) * 1000);
-  if (permille == last_permille_) {
-    return;
-  }
-  last_permille_ = permille;
-  drawn_ = true;
-  constexpr int kWidth = 40;
-  const int filled = permille * kWidth / 1000;
-  const std::string bar =
-      std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(kWidth - filled), '.');
-  std::fprintf(stderr, "\r%s [%s] %5.1f %%", what_.c_str(), bar.c_str(), permille / 10.0);
 }
 
 }  // namespace gravure::cli

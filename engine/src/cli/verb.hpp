@@ -10,6 +10,7 @@
 #include "gravure/core/error.hpp"
 #include "gravure/core/exact.hpp"
 #include "gravure/core/progress.hpp"
+#include "progress_bar.hpp"
 
 namespace gravure::cli {
 
@@ -62,22 +63,6 @@ void interrupt();
 /// `text` without what a terminal would obey: control characters but line ends, and bytes that are no UTF-8.
 std::string printable(std::string_view text);
 
-/// A progress bar on standard error, on a terminal only.
-class ProgressBar final : public Progress {
- public:
-  explicit ProgressBar(std::string what);
-  ~ProgressBar() override;
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
-  void update(std::int64_t done, std::int64_t total) override;
-
- private:
-  std::string what_;
-  bool terminal_;
-  bool drawn_ = false;
-  int last_permille_ = -1;
-};
-
 // The verbs, a file each.
 void add_init(CLI::App& app, Command& command);
 void add_plan(CLI::App& app, Command& command);
@@ -95,5 +80,7 @@ void add_trajectory(CLI::App& app, Command& command);
 void add_export(CLI::App& app, Command& command);
 void add_calibrate(CLI::App& app, Command& command);
 void add_devices(CLI::App& app, Command& command);
+void add_completion(CLI::App& app, Command& command);
+void add_man(CLI::App& app, Command& command);
 
 }  // namespace gravure::cli
