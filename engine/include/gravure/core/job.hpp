@@ -29,10 +29,10 @@ struct LaserSettings {
   std::int64_t pulse_divider = 1;           ///< k: every k-th seed pulse is amplified
   std::int64_t max_pulse_on_demand_hz = 0;  ///< fastest rate at which the gate can switch single pulses
   // What a pulse removes: for the expected relief alone. Where one of the four is absent it is told in pulses.
-  std::optional<Rational> spot_um;          ///< diameter 2 w0 in focus, to 1/e^2 of the intensity
-  std::optional<Rational> fluence_j_cm2;    ///< in the centre of the spot
-  std::optional<Rational> threshold_j_cm2;  ///< of ablation
-  std::optional<Rational> penetration_nm;   ///< depth a pulse gains when the fluence grows by a factor e
+  std::optional<Rational> spot_um = {};          ///< diameter 2 w0 in focus, to 1/e^2 of the intensity
+  std::optional<Rational> fluence_j_cm2 = {};    ///< in the centre of the spot
+  std::optional<Rational> threshold_j_cm2 = {};  ///< of ablation
+  std::optional<Rational> penetration_nm = {};   ///< depth a pulse gains when the fluence grows by a factor e
 };
 
 struct FpgaSettings {
