@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "banded.hpp"
+#include "gravure/core/banded.hpp"
 
 namespace gravure::motion {
 

@@ -4,6 +4,9 @@
 
 #include <numbers>
 
+#include "gravure/texture/splitter.hpp"
+#include "splitters.hpp"
+
 namespace gravure::texture {
 namespace {
 
@@ -14,6 +17,15 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 bool within(const DeviationSummary& most, const DeviationLimits& limits) {
   return most.max_focus_mm <= limits.focus_mm && most.max_incidence_rad <= limits.incidence_rad &&
          most.max_displacement_mm <= limits.displacement_mm;
+}
+
+/// Says whose points they are where the surface has none.
+Result<void> project_stages(const Surface& surface, const std::vector<Vector2>& slow, std::span<SurfacePoint> out) {
+  Result<void> projected = surface.project(slow, out);
+  if (!projected) {
+    return Error{projected.error().code, "the stages' path: " + projected.error().message};
+  }
+  return projected;
 }
 
 /// Every sixteenth point: where these are beyond a limit already, the others need no look.
@@ -30,7 +42,7 @@ class Sample {
     for (std::size_t i = 0; i < slow.size(); i += kStride) {
       some.push_back(slow[i]);
     }
-    GRAVURE_CHECK(surface.project(some, stages_));
+    GRAVURE_CHECK(project_stages(surface, some, stages_));
     return summarise(targets_, stages_);
   }
 
@@ -53,38 +65,53 @@ std::vector<double> pulse_lengths_mm(const TexturePath& path, std::span<const Su
   return lengths;
 }
 
-Result<Split> split_path(const Surface& surface, const TexturePath& path, const GaussianFilter& filter) {
+Result<Split> split_path(const Splitter& splitter, const Surface& surface, const TexturePath& path,
+                         const DeviationLimits& limits, double sigma_mm, const CancelToken& cancel) {
   Split split;
-  split.sigma_mm = filter.sigma_mm;
-  GRAVURE_TRY(const std::vector<Vector2> slow, slow_part(path.points_mm, path.step_mm, filter));
+  split.sigma_mm = sigma_mm;
   split.targets.resize(path.points_mm.size());
-  split.stages.resize(slow.size());
+  split.stages.resize(path.points_mm.size());
   GRAVURE_CHECK(surface.project(path.points_mm, split.targets));
-  GRAVURE_CHECK(surface.project(slow, split.stages));
+  GRAVURE_TRY(const std::vector<Vector2> slow,
+              splitter.stages_mm({surface, path, split.targets, sigma_mm, limits}, cancel));
+  GRAVURE_CHECK(project_stages(surface, slow, split.stages));
   split.most = summarise(split.targets, split.stages);
   return split;
 }
 
+Result<Split> split_path(const Surface& surface, const TexturePath& path, const GaussianFilter& filter) {
+  return split_path(*gaussian_splitter(filter), surface, path, {}, filter.sigma_mm, CancelToken());
+}
+
 Result<Split> split_by_published_rule(const Surface& surface, const TexturePath& path, const DeviationLimits& limits,
                                       GaussianFilter filter, const CancelToken& cancel) {
+  return split_by_published_rule(*gaussian_splitter(filter), surface, path, limits, cancel);
+}
+
+Result<Split> split_by_published_rule(const Splitter& splitter, const Surface& surface, const TexturePath& path,
+                                      const DeviationLimits& limits, const CancelToken& cancel) {
+  if (splitter.keeps_limits()) {
+    return split_path(splitter, surface, path, limits, kFirstSigma_mm, cancel);
+  }
   Split split;
   split.targets.resize(path.points_mm.size());
   split.stages.resize(path.points_mm.size());
   GRAVURE_CHECK(surface.project(path.points_mm, split.targets));
   Sample sample(split.targets);
   split.tries = 0;
-  for (filter.sigma_mm = kFirstSigma_mm; filter.sigma_mm >= path.step_mm; filter.sigma_mm *= kNextSigma) {
+  for (double sigma_mm = kFirstSigma_mm; sigma_mm >= path.step_mm; sigma_mm *= kNextSigma) {
     if (cancel.cancelled()) {
       return Error{ErrorCode::cancelled, "stopped while sigma was sought"};
     }
     ++split.tries;
-    split.sigma_mm = filter.sigma_mm;
-    GRAVURE_TRY(const std::vector<Vector2> slow, slow_part(path.points_mm, path.step_mm, filter));
+    split.sigma_mm = sigma_mm;
+    GRAVURE_TRY(const std::vector<Vector2> slow,
+                splitter.stages_mm({surface, path, split.targets, sigma_mm, limits}, cancel));
     GRAVURE_TRY(split.most, sample.look(surface, slow));
     if (!within(split.most, limits)) {
       continue;
     }
-    GRAVURE_CHECK(surface.project(slow, split.stages));
+    GRAVURE_CHECK(project_stages(surface, slow, split.stages));
     split.most = summarise(split.targets, split.stages);
     if (within(split.most, limits)) {
       return split;

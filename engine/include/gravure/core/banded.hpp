@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace gravure::motion {
+namespace gravure {
 
 /// A symmetric matrix with three diagonals on each side, as cubic splines give; row i holds (i, i) to (i, i + 3).
 class Banded {
@@ -30,16 +30,26 @@ class Banded {
     return y;
   }
 
-  /// Solves this * x = right in place of right, factoring L D L' over itself. Positive definite matrices only.
-  void solve(std::vector<double>& right) noexcept {
+  /// Eliminates downwards in place, for solve_factored(). Positive definite matrices only.
+  void factor() noexcept {
     for (std::size_t i = 0; i < size(); ++i) {
       const double pivot = rows_[i][0];
       for (std::size_t k = 1; k <= kBand && i + k < size(); ++k) {
-        const double factor = rows_[i][k] / pivot;
+        const double share = rows_[i][k] / pivot;
         for (std::size_t l = k; l <= kBand && i + l < size(); ++l) {
-          rows_[i + k][l - k] -= factor * rows_[i][l];
+          rows_[i + k][l - k] -= share * rows_[i][l];
         }
-        right[i + k] -= factor * right[i];
+      }
+    }
+  }
+
+  /// Solves in place of the right side (numbers, or vectors of them), after factor().
+  template <class Value>
+  void solve_factored(std::vector<Value>& right) const noexcept {
+    for (std::size_t i = 0; i < size(); ++i) {
+      const double pivot = rows_[i][0];
+      for (std::size_t k = 1; k <= kBand && i + k < size(); ++k) {
+        right[i + k] -= rows_[i][k] / pivot * right[i];
       }
     }
     for (std::size_t i = size(); i-- > 0;) {
@@ -50,8 +60,14 @@ class Banded {
     }
   }
 
+  /// Solves this * x = right in place of right, factoring over itself.
+  void solve(std::vector<double>& right) noexcept {
+    factor();
+    solve_factored(right);
+  }
+
  private:
   std::vector<std::array<double, kBand + 1>> rows_;
 };
 
-}  // namespace gravure::motion
+}  // namespace gravure
