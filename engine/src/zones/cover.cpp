@@ -1,0 +1,252 @@
+#include "gravure/zones/cover.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "set_cover.hpp"
+#include "zone_of.hpp"
+
+namespace gravure::zones {
+namespace {
+
+/// With more directions, circles through pairs of a sample of them alone are looked at.
+constexpr std::size_t kMostDirections = 150;
+constexpr std::size_t kMostWindowEdges = 64;
+
+/// Pieces that share a direction from which all of them can be marked.
+struct Candidates {
+  std::vector<Bits> sets;
+  std::vector<Vector3> axes;
+  bool is_complete = true;  ///< every set that any direction has is part of one of these
+
+  void keep_maximal() {
+    const std::vector<std::size_t> kept = maximal_sets(sets);
+    Candidates rest;
+    for (const std::size_t s : kept) {
+      rest.sets.push_back(sets[s]);
+      rest.axes.push_back(axes[s]);
+    }
+    rest.is_complete = is_complete;
+    *this = std::move(rest);
+  }
+};
+
+/// The different directions; where there are too many, ones far from each other.
+std::vector<Vector3> sample_directions(const std::vector<Piece>& pieces, bool& is_complete) {
+  std::vector<Vector3> all;
+  for (const Piece& piece : pieces) {
+    all.push_back(piece.direction);
+  }
+  const auto less = [](const Vector3& a, const Vector3& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  };
+  std::sort(all.begin(), all.end(), less);
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  is_complete = all.size() <= kMostDirections;
+  if (is_complete) {
+    return all;
+  }
+  std::vector<Vector3> sample{all[0]};
+  std::vector<double> cosine(all.size(), -2);
+  while (sample.size() < kMostDirections) {
+    std::size_t farthest = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      cosine[i] = std::max(cosine[i], all[i].dot(sample.back()));
+      farthest = cosine[i] < cosine[farthest] ? i : farthest;
+    }
+    sample.push_back(all[farthest]);
+  }
+  return sample;
+}
+
+/// The axes `angle` away from both directions; none where they are farther apart than that reaches.
+std::vector<Vector3> axes_through(const Vector3& a, const Vector3& b, double angle) {
+  const Vector3 middle = (a + b).normalized();
+  const Vector3 side = a.cross(b).normalized();
+  // cos(angle) = cos(half) cos(lift): the axis is lifted out of the plane of both.
+  const double cosine = std::cos(angle) / middle.dot(a);
+  if (!(cosine <= 1) || !side.allFinite() || !middle.allFinite()) {
+    return {};
+  }
+  const double sine = std::sqrt(1 - cosine * cosine);
+  return {cosine * middle + sine * side, cosine * middle - sine * side};
+}
+
+/// Every largest set of pieces within the limit of one direction, whatever their place.
+Candidates candidates_by_direction(const std::vector<Piece>& pieces, double limit) {
+  Candidates found;
+  const std::vector<Vector3> sample = sample_directions(pieces, found.is_complete);
+  std::map<Bits, Vector3> sets;
+  const auto offer = [&](const Vector3& axis) {
+    Bits members(pieces.size());
+    // A direction beyond the limit by rounding alone counts: it may be one of the two that the circle goes through.
+    const double least = std::cos(limit + kAngleSlack);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (pieces[i].direction.dot(axis) >= least) {
+        members.set(i);
+      }
+    }
+    if (!members.empty()) {
+      sets.emplace(std::move(members), axis);
+    }
+  };
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    offer(sample[i]);
+    for (std::size_t j = i + 1; j < sample.size(); ++j) {
+      for (const Vector3& axis : axes_through(sample[i], sample[j], limit)) {
+        offer(axis);
+      }
+    }
+  }
+  if (!found.is_complete) {  // directions outside the sample need a set as well
+    for (const Piece& piece : pieces) {
+      offer(piece.direction);
+    }
+  }
+  for (auto& [members, axis] : sets) {
+    found.sets.push_back(members);
+    found.axes.push_back(axis);
+  }
+  found.keep_maximal();
+  return found;
+}
+
+/// Numbers of a list that is not too long.
+std::vector<double> edges_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  const std::size_t step = (values.size() + kMostWindowEdges - 1) / kMostWindowEdges;
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < values.size(); i += step) {
+    kept.push_back(values[i]);
+  }
+  return kept;
+}
+
+/// What of a set a field sees that stands with its left and lower edge at those of pieces.
+void add_windows(const std::vector<Piece>& pieces, const std::vector<std::size_t>& members, const Vector3& axis,
+                 double field_mm, Candidates& found) {
+  const LocalFrame frame = frame_of(axis);
+  std::vector<Extent> boxes;
+  std::vector<double> lefts;
+  std::vector<double> bottoms;
+  for (const std::size_t i : members) {
+    boxes.push_back(extent_of(pieces[i], frame));
+    lefts.push_back(boxes.back().least.x());
+    bottoms.push_back(boxes.back().least.y());
+  }
+  const double side = field_mm + kFieldSlackMm;
+  for (const double left : edges_of(lefts)) {
+    for (const double bottom : edges_of(bottoms)) {
+      Bits seen(pieces.size());
+      for (std::size_t m = 0; m < members.size(); ++m) {
+        const Extent& box = boxes[m];
+        if (box.least.x() >= left && box.least.y() >= bottom && box.most.x() <= left + side &&
+            box.most.y() <= bottom + side) {
+          seen.set(members[m]);
+        }
+      }
+      if (!seen.empty()) {
+        found.sets.push_back(std::move(seen));
+        found.axes.push_back(axis);
+      }
+    }
+  }
+}
+
+/// The same sets as far as they fit the field; each has a direction from which all its pieces can be marked.
+Candidates fit_field(const std::vector<Piece>& pieces, const Candidates& by_direction, const ZoneLimits& limits) {
+  Candidates found;
+  found.is_complete = by_direction.is_complete;
+  for (std::size_t s = 0; s < by_direction.sets.size(); ++s) {
+    const std::vector<std::size_t> members = by_direction.sets[s].members();
+    const std::optional<Zone> whole = zone_of(pieces, members, limits, by_direction.axes[s]);
+    if (whole) {
+      found.sets.push_back(by_direction.sets[s]);
+      found.axes.push_back(whole->direction);
+    } else {
+      found.is_complete = false;
+      add_windows(pieces, members, by_direction.axes[s], limits.field_mm, found);
+    }
+  }
+  if (!found.is_complete) {  // each piece alone fits from its own direction
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      Bits alone(pieces.size());
+      alone.set(i);
+      found.sets.push_back(std::move(alone));
+      found.axes.push_back(pieces[i].direction);
+    }
+  }
+  found.keep_maximal();
+  return found;
+}
+
+/// Each piece to the chosen set that sees it at the least angle.
+std::vector<Zone> assign(const std::vector<Piece>& pieces, const Candidates& candidates,
+                         const std::vector<std::size_t>& chosen, const ZoneLimits& limits) {
+  std::vector<std::vector<std::size_t>> members(chosen.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    std::size_t best = chosen.size();
+    double least = 0;
+    for (std::size_t c = 0; c < chosen.size(); ++c) {
+      const double angle = angle_between(pieces[i].direction, candidates.axes[chosen[c]]);
+      if (candidates.sets[chosen[c]].has(i) && (best == chosen.size() || angle < least)) {
+        best = c;
+        least = angle;
+      }
+    }
+    members[best].push_back(i);
+  }
+  std::vector<Zone> zones;
+  for (std::size_t c = 0; c < chosen.size(); ++c) {
+    if (!members[c].empty()) {
+      const Vector3& axis = candidates.axes[chosen[c]];
+      const std::optional<Zone> zone = zone_of(pieces, members[c], limits, axis);
+      zones.push_back(zone ? *zone : describe_zone(pieces, members[c], axis));
+    }
+  }
+  return zones;
+}
+
+std::size_t bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits, const Candidates& by_direction) {
+  std::vector<Bits> neighbours(pieces.size(), Bits(pieces.size()));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    neighbours[i].set(i);
+    for (std::size_t j = i + 1; j < pieces.size(); ++j) {
+      if (!are_apart(pieces[i], pieces[j], limits)) {
+        neighbours[i].set(j);
+        neighbours[j].set(i);
+      }
+    }
+  }
+  std::size_t bound = largest_packing(neighbours);
+  if (by_direction.is_complete) {
+    const SetCover cover = smallest_cover(by_direction.sets, pieces.size());
+    bound = cover.is_proved ? std::max(bound, cover.chosen.size()) : bound;
+  }
+  return bound;
+}
+
+}  // namespace
+
+std::size_t lower_bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits) {
+  return bound_of(pieces, limits, candidates_by_direction(pieces, limits.incidence_rad));
+}
+
+Result<ZoneSet> cover_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits) {
+  GRAVURE_CHECK(check_limits(pieces, limits));
+  const Candidates by_direction = candidates_by_direction(pieces, limits.incidence_rad);
+  ZoneSet set;
+  set.lower_bound = bound_of(pieces, limits, by_direction);
+  const Candidates candidates = fit_field(pieces, by_direction, limits);
+  const SetCover cover = smallest_cover(candidates.sets, pieces.size());
+  set.zones = assign(pieces, candidates, cover.chosen, limits);
+  refine_zones(pieces, limits, set.zones);
+  sort_zones(set.zones);
+  return set;
+}
+
+}  // namespace gravure::zones

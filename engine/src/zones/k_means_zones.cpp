@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "gravure/zones/k_means.hpp"
+#include "zone_of.hpp"
+
+namespace gravure::zones {
+namespace {
+
+constexpr std::size_t kDimensions = 6;
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// Middle of a piece by its length: how densely its points lie plays no part.
+Vector3 middle_of(const Piece& piece) {
+  Vector3 sum = Vector3::Zero();
+  double length = 0;
+  for (std::size_t i = 1; i < piece.points_mm.size(); ++i) {
+    const double step = (piece.points_mm[i] - piece.points_mm[i - 1]).norm();
+    sum += step / 2 * (piece.points_mm[i] + piece.points_mm[i - 1]);
+    length += step;
+  }
+  return length > 0 ? Vector3(sum / length) : piece.points_mm[0];
+}
+
+/// x, y, z and u, v, w of each piece.
+std::vector<double> features_of(const std::vector<Piece>& pieces, bool normalised) {
+  std::vector<Vector3> middles;
+  for (const Piece& piece : pieces) {
+    middles.push_back(middle_of(piece));
+  }
+  Vector3 least = middles[0];
+  Vector3 most = middles[0];
+  for (const Vector3& middle : middles) {
+    least = least.cwiseMin(middle);
+    most = most.cwiseMax(middle);
+  }
+  std::vector<double> features;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const double range = most[k] - least[k];
+      features.push_back(!normalised ? middles[i][k] : range > 0 ? (middles[i][k] - least[k]) / range : 0);
+    }
+    features.insert(features.end(), pieces[i].direction.data(), pieces[i].direction.data() + 3);
+  }
+  return features;
+}
+
+/// Seen along the centre of its directions, made of length 1; where they cancel, along the first of them.
+Zone published_zone(const std::vector<Piece>& pieces, const std::vector<std::size_t>& members) {
+  Vector3 sum = Vector3::Zero();
+  for (const std::size_t i : members) {
+    sum += pieces[i].direction;
+  }
+  constexpr double kCancelled = 1e-9;
+  const double length = sum.norm();
+  return describe_zone(pieces, members, length > kCancelled ? Vector3(sum / length) : pieces[members[0]].direction);
+}
+
+Result<ZoneSet> cluster(const std::vector<Piece>& pieces, const std::vector<double>& features, std::size_t clusters,
+                        std::uint64_t seed) {
+  KMeansRequest request;
+  request.clusters = clusters;
+  request.dimensions = kDimensions;
+  request.seed = seed;
+  GRAVURE_TRY(const Clustering found, k_means(features, request));
+  ZoneSet set;
+  set.clusters = clusters;
+  set.inertia = found.inertia;
+  std::vector<std::vector<std::size_t>> members(found.clusters(kDimensions));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    members[found.labels[i]].push_back(i);
+  }
+  for (const std::vector<std::size_t>& of_zone : members) {
+    set.zones.push_back(published_zone(pieces, of_zone));
+  }
+  sort_zones(set.zones);
+  return set;
+}
+
+void add_violations(const ZoneLimits& limits, ZoneSet& set) {
+  for (std::size_t z = 0; z < set.zones.size(); ++z) {
+    const Zone& zone = set.zones[z];
+    if (zone.max_incidence_rad > limits.incidence_rad + kAngleSlack) {
+      set.violations.push_back(fmt::format("zone {}: incidence {:.3f} deg, allowed {:.3f}", z,
+                                           zone.max_incidence_rad * kDegrees, limits.incidence_rad * kDegrees));
+    }
+    if (std::max(zone.width_mm, zone.height_mm) > limits.field_mm + kFieldSlackMm) {
+      set.violations.push_back(fmt::format("zone {}: {:.3f} x {:.3f} mm in a field of {:.3f} mm", z, zone.width_mm,
+                                           zone.height_mm, limits.field_mm));
+    }
+  }
+}
+
+}  // namespace
+
+Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const KMeansZones& options) {
+  GRAVURE_CHECK(check_limits(pieces, limits));
+  const std::vector<double> features = features_of(pieces, options.normalised);
+  const std::size_t bound = lower_bound_of(pieces, limits);
+  const std::size_t first = options.clusters > 0 ? options.clusters : bound;
+  const std::size_t last = options.clusters > 0 ? options.clusters : pieces.size();
+  for (std::size_t clusters = first;; ++clusters) {
+    GRAVURE_TRY(ZoneSet set, cluster(pieces, features, clusters, options.seed));
+    add_violations(limits, set);
+    if (set.violations.empty() || clusters >= last) {
+      set.lower_bound = bound;
+      return set;
+    }
+  }
+}
+
+}  // namespace gravure::zones
