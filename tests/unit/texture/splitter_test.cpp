@@ -123,14 +123,14 @@ TEST(Splitter, ThatKeepsLimitsDoesSoAtEveryPoint) {
 TEST(Splitter, NarrowsWhereABumpAsksForItOnly) {
   const auto bump = expression_surface("1.5*exp(-((x-12)^2+(y-12)^2)/18)").value();
   const TexturePath path = hilbert(5);
-  const auto split_by = [&](SplitMethod method) {
-    auto split = split_by_published_rule(*splitter(method), *bump, path, {}, CancelToken());
+  const auto split_by = [&](SplitMethod method, double reach_mm) {
+    auto split = split_by_published_rule(*splitter(method), *bump, path, {.displacement_mm = reach_mm}, CancelToken());
     EXPECT_TRUE(split) << split.error().message;
     return std::move(split).value();
   };
-  const Split gaussian = split_by(SplitMethod::gaussian);
-  const Split adapted = split_by(SplitMethod::adaptive);
-  const Split optimal = split_by(SplitMethod::optimal);
+  const Split gaussian = split_by(SplitMethod::gaussian, 20);
+  const Split adapted = split_by(SplitMethod::adaptive, 20);
+  const Split optimal = split_by(SplitMethod::optimal, 5);
   const double jerk = stage_demand(gaussian.stages, path.step_mm).rms_jerk_per_mm2;
   EXPECT_LT(stage_demand(adapted.stages, path.step_mm).rms_jerk_per_mm2, 0.5 * jerk);
   EXPECT_LT(stage_demand(optimal.stages, path.step_mm).rms_jerk_per_mm2, 0.25 * jerk);
