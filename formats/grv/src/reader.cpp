@@ -9,6 +9,7 @@
 
 #include "bit_count.hpp"
 #include "codec.hpp"
+#include "column_table.hpp"
 #include "gravure/formats/grv.hpp"
 #include "hdf5_channel.hpp"
 #include "hdf5_data.hpp"
@@ -16,6 +17,7 @@
 #include "header_check.hpp"
 #include "header_io.hpp"
 #include "layout.hpp"
+#include "path_rows.hpp"
 #include "seal.hpp"
 
 namespace gravure {
@@ -30,6 +32,8 @@ struct Contents {
   std::vector<std::uint64_t> checksums;
   std::vector<std::int64_t> fired;
   Compression compression = Compression::none;
+  ColumnReader set_points;
+  ColumnReader targets;
 };
 
 Result<Compression> read_compression(hid_t creation) {
@@ -81,7 +85,20 @@ Result<Compression> check_bits(hid_t file, const Layout& layout) {
   return read_compression(creation.get());
 }
 
-Result<void> read_contents(hid_t file, Contents& contents) {
+Result<void> read_path(hid_t file, Contents& contents, std::uint64_t file_bytes) {
+  const std::optional<PathPlan>& path = contents.header.plan.path;
+  if (!path) {
+    return {};
+  }
+  GRAVURE_TRY(contents.set_points,
+              ColumnReader::open(file, set_point_columns(), set_points_of(contents.header.plan), file_bytes));
+  if (path->targets > 0) {
+    GRAVURE_TRY(contents.targets, ColumnReader::open(file, target_columns(), path->targets, file_bytes));
+  }
+  return {};
+}
+
+Result<void> read_contents(hid_t file, Contents& contents, std::uint64_t file_bytes) {
   const Layout& layout = contents.layout;
   GRAVURE_TRY(contents.header, read_header(file, layout));
   GRAVURE_TRY(contents.compression, check_bits(file, layout));
@@ -89,7 +106,8 @@ Result<void> read_contents(hid_t file, Contents& contents) {
                                         static_cast<hsize_t>(layout.chunks_per_layer())};
   GRAVURE_TRY(contents.checksums, read_table<std::uint64_t>(file, "layers/checksums", shape));
   GRAVURE_TRY(contents.fired, read_table<std::int64_t>(file, "layers/chunk_fired_pixels", shape));
-  return check_header(contents.header, layout, contents.fired, ErrorCode::bad_file);
+  GRAVURE_CHECK(check_header(contents.header, layout, contents.fired, ErrorCode::bad_file));
+  return read_path(file, contents, file_bytes);
 }
 
 /// Reads what HDF5 has to say; the file has been verified before, so that the library meets no damaged structure.
@@ -106,7 +124,8 @@ Result<void> read_hdf5(const std::shared_ptr<Hdf5Channel>& channel, Contents& co
     const Error unreadable{ErrorCode::bad_file, path + ": HDF5 cannot read it: " + hdf5_reason()};
     return channel->failure().value_or(unreadable);
   }
-  if (const auto read = read_contents(file.get(), contents); !read) {
+  GRAVURE_TRY(const std::uint64_t file_bytes, channel->file().size());
+  if (const auto read = read_contents(file.get(), contents, file_bytes); !read) {
     return channel->failure().value_or(Error{read.error().code, path + ": " + read.error().message});
   }
   return {};
@@ -124,6 +143,8 @@ class GrvSource final : public LineSource {
   std::int64_t lines_per_chunk() const noexcept override { return contents_.layout.lines_per_chunk; }
   Result<StoredChunk> fetch(ChunkAddress address) override;
   Result<void> decode(const StoredChunk& chunk, std::span<std::byte> out) const override;
+  Result<void> read_set_points(std::int64_t first, std::span<PathSetPoint> out) override;
+  Result<void> read_targets(std::int64_t first, std::span<PathTarget> out) override;
 
  private:
   std::string place(ChunkAddress address) const;
@@ -207,6 +228,20 @@ Result<void> GrvSource::decode(const StoredChunk& chunk, std::span<std::byte> ou
     return damaged(chunk.address, std::to_string(count_bits(out)) + " pixels fire, the table says " +
                                       std::to_string(contents_.fired[index]));
   }
+  return {};
+}
+
+Result<void> GrvSource::read_set_points(std::int64_t first, std::span<PathSetPoint> out) {
+  std::vector<std::int64_t> rows(out.size() * set_point_columns().columns);
+  GRAVURE_CHECK(contents_.set_points.read(channel_->file(), first, rows));
+  set_points_from(rows, out);
+  return {};
+}
+
+Result<void> GrvSource::read_targets(std::int64_t first, std::span<PathTarget> out) {
+  std::vector<std::int64_t> rows(out.size() * target_columns().columns);
+  GRAVURE_CHECK(contents_.targets.read(channel_->file(), first, rows));
+  targets_from(rows, out);
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include "bit_count.hpp"
 #include "byte_file.hpp"
 #include "codec.hpp"
+#include "column_table.hpp"
 #include "gravure/core/file_output.hpp"
 #include "gravure/formats/grv.hpp"
 #include "hdf5_channel.hpp"
@@ -17,6 +18,7 @@
 #include "header_check.hpp"
 #include "header_io.hpp"
 #include "layout.hpp"
+#include "path_rows.hpp"
 #include "seal.hpp"
 
 namespace gravure {
@@ -30,6 +32,7 @@ struct OpenProgram {
   Handle offset_table;
   Handle stored_table;
   Handle bits;
+  Handle path;  ///< once there is something in it
 };
 
 Result<void> set_filter(hid_t creation, const GrvOptions& options) {
@@ -113,7 +116,9 @@ class GrvSink final : public LineSink {
         options_(options),
         tables_{std::vector<std::uint64_t>(count()), std::vector<std::uint64_t>(count())},
         checksums_(count()),
-        fired_(count()) {}
+        fired_(count()),
+        set_points_(set_point_columns(), options),
+        targets_(target_columns(), options) {}
   GrvSink(const GrvSink&) = delete;
   GrvSink& operator=(const GrvSink&) = delete;
   ~GrvSink() override {
@@ -124,6 +129,8 @@ class GrvSink final : public LineSink {
   std::int64_t lines_per_chunk() const noexcept override { return layout_.lines_per_chunk; }
   Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const override;
   Result<void> put(const StoredChunk& chunk) override;
+  Result<void> put_set_points(std::span<const PathSetPoint> next) override;
+  Result<void> put_targets(std::span<const PathTarget> next) override;
   Result<void> finish(const ProgramHeader& header) override;
 
  private:
@@ -134,6 +141,8 @@ class GrvSink final : public LineSink {
   Result<void> check_complete(const ProgramHeader& header) const;
   Result<void> write_all(const ProgramHeader& header);
   Result<void> write_chunk_tables();
+  Result<void> put_rows(ColumnWriter& table, std::span<const std::int64_t> rows);
+  Result<void> write_path();
   Error fail(const Error& error);
   void give_up();
 
@@ -145,6 +154,8 @@ class GrvSink final : public LineSink {
   ChunkTables tables_;  ///< stored_bytes 0: not put yet
   std::vector<std::uint64_t> checksums_;
   std::vector<std::int64_t> fired_;
+  ColumnWriter set_points_;
+  ColumnWriter targets_;
   mutable std::atomic<std::uint8_t> last_bytes_{0};  ///< of all lines encoded, OR-ed
 };
 
@@ -208,6 +219,8 @@ Error GrvSink::fail(const Error& error) {
 
 void GrvSink::give_up() {
   channel_->abandon();
+  set_points_.close();
+  targets_.close();
   program_ = {};
   FileOutput discarded = std::move(output_);
 }
@@ -236,6 +249,43 @@ Result<void> GrvSink::put(const StoredChunk& chunk) {
   return {};
 }
 
+Result<void> GrvSink::put_rows(ColumnWriter& table, std::span<const std::int64_t> rows) {
+  const Hdf5Session session;
+  if (!program_.path.valid()) {
+    Result<Handle> group = create_group(program_.file.get(), "path");
+    if (!group) {
+      return fail(group.error());
+    }
+    program_.path = std::move(group).value();
+  }
+  if (const auto put = table.put(program_.path.get(), *channel_, rows); !put || channel_->failure()) {
+    return fail(put ? write_failure("path") : put.error());
+  }
+  return {};
+}
+
+Result<void> GrvSink::put_set_points(std::span<const PathSetPoint> next) {
+  GRAVURE_CHECK(check_open());
+  return put_rows(set_points_, rows_of(next));
+}
+
+Result<void> GrvSink::put_targets(std::span<const PathTarget> next) {
+  GRAVURE_CHECK(check_open());
+  const auto rows = rows_of(next);
+  if (!rows) {
+    return refuse(rows.error().message);
+  }
+  return put_rows(targets_, rows.value());
+}
+
+Result<void> GrvSink::write_path() {
+  if (!program_.path.valid()) {
+    return {};
+  }
+  GRAVURE_CHECK(set_points_.finish(program_.path.get(), *channel_));
+  return targets_.finish(program_.path.get(), *channel_);
+}
+
 Result<void> GrvSink::check_complete(const ProgramHeader& header) const {
   for (std::size_t i = 0; i < count(); ++i) {
     if (tables_.stored_bytes[i] == 0) {
@@ -248,6 +298,12 @@ Result<void> GrvSink::check_complete(const ProgramHeader& header) const {
   }
   if (const auto checked = check_header(header, layout_, fired_, ErrorCode::bad_argument); !checked) {
     return refuse(checked.error().message);
+  }
+  const std::int64_t targets = header.plan.path ? header.plan.path->targets : 0;
+  if (set_points_.rows() != set_points_of(header.plan) || targets_.rows() != targets) {
+    return refuse(std::to_string(set_points_.rows()) + " set-points and " + std::to_string(targets_.rows()) +
+                  " wanted points were put: the plan has " + std::to_string(set_points_of(header.plan)) + " and " +
+                  std::to_string(targets));
   }
   if ((last_bytes_.load() & unused_bits(header.plan.line.pixels)) != 0) {
     return refuse("a line has bits set beyond its last pixel, number " + std::to_string(header.plan.line.pixels - 1));
@@ -269,6 +325,7 @@ Result<void> GrvSink::write_chunk_tables() {
 
 Result<void> GrvSink::write_all(const ProgramHeader& header) {
   GRAVURE_CHECK(write_chunk_tables());
+  GRAVURE_CHECK(write_path());
   GRAVURE_CHECK(write_header(program_.file.get(), program_.layers.get(), header));
   const haddr_t offset_table_at = H5Dget_offset(program_.offset_table.get());
   const haddr_t stored_table_at = H5Dget_offset(program_.stored_table.get());
@@ -276,6 +333,7 @@ Result<void> GrvSink::write_all(const ProgramHeader& header) {
     return write_failure("the end of the file");
   }
   OpenProgram closing = std::move(program_);
+  closing.path.reset();
   closing.bits.reset();
   closing.stored_table.reset();
   closing.offset_table.reset();

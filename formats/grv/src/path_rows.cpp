@@ -1,0 +1,76 @@
+#include "path_rows.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "column_table.hpp"
+
+namespace gravure::grv {
+namespace {
+
+constexpr double kCountsPerMm = 1e9;
+constexpr double kCountsOfOne = 1e12;
+constexpr double kMost = 4e18;  // in 63 bits
+
+using TargetNumbers = std::array<double, 7>;
+
+TargetNumbers numbers_of(const PathTarget& target) {
+  return {target.along_mm * kCountsPerMm,       target.position_mm[0] * kCountsPerMm,
+          target.position_mm[1] * kCountsPerMm, target.position_mm[2] * kCountsPerMm,
+          target.normal[0] * kCountsOfOne,      target.normal[1] * kCountsOfOne,
+          target.normal[2] * kCountsOfOne};
+}
+
+}  // namespace
+
+std::vector<std::int64_t> rows_of(std::span<const PathSetPoint> points) {
+  std::vector<std::int64_t> rows;
+  rows.reserve(points.size() * set_point_columns().columns);
+  for (const PathSetPoint& point : points) {
+    rows.insert(rows.end(), point.counts.begin(), point.counts.end());
+    rows.push_back(point.along_counts);
+  }
+  return rows;
+}
+
+void set_points_from(std::span<const std::int64_t> rows, std::span<PathSetPoint> out) {
+  auto next = rows.begin();
+  for (PathSetPoint& point : out) {
+    for (std::int64_t& counts : point.counts) {
+      counts = *next++;
+    }
+    point.along_counts = *next++;
+  }
+}
+
+Result<std::vector<std::int64_t>> rows_of(std::span<const PathTarget> targets) {
+  std::vector<std::int64_t> rows;
+  rows.reserve(targets.size() * target_columns().columns);
+  for (const PathTarget& target : targets) {
+    for (const double number : numbers_of(target)) {
+      if (!(std::abs(number) <= kMost)) {
+        return Error{ErrorCode::bad_argument,
+                     "a wanted point at " + std::to_string(target.along_mm) + " mm of the path is beyond 4e9 mm"};
+      }
+      rows.push_back(std::llround(number));
+    }
+  }
+  return rows;
+}
+
+void targets_from(std::span<const std::int64_t> rows, std::span<PathTarget> out) {
+  auto next = rows.begin();
+  const auto mm = [&next] { return static_cast<double>(*next++) / kCountsPerMm; };
+  for (PathTarget& target : out) {
+    target.along_mm = mm();
+    for (double& position : target.position_mm) {
+      position = mm();
+    }
+    for (double& part : target.normal) {
+      part = static_cast<double>(*next++) / kCountsOfOne;
+    }
+  }
+}
+
+}  // namespace gravure::grv
