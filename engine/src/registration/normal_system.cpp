@@ -1,0 +1,78 @@
+#include "normal_system.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace gravure::registration {
+
+Similarity SmallMotion::similarity() const {
+  const Eigen::Vector3d turn = by.head<3>() / length_mm;
+  const double angle = turn.norm();
+  Similarity motion;
+  if (angle > 0) {
+    motion.rotation = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  }
+  motion.scale = std::exp(by[6] / length_mm);
+  motion.translation_mm = centre + by.segment<3>(3) - motion.scale * (motion.rotation * centre);
+  return motion;
+}
+
+void NormalSystem::add(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, double distance) {
+  const Eigen::Vector3d arm = (place - centre_) / length_mm_;
+  Unknowns row;
+  row << arm.cross(normal), normal, normal.dot(arm);
+  sum_.noalias() += row * row.transpose();
+  right_ -= distance * row;
+  squares_ += distance * distance;
+  ++count_;
+}
+
+double NormalSystem::rms() const noexcept {
+  return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0;
+}
+
+Eigen::MatrixXd NormalSystem::matrix(int unknowns) const {
+  return sum_.topLeftCorner(unknowns, unknowns) / static_cast<double>(count_);
+}
+
+SmallMotion NormalSystem::step(int unknowns, double weak_share, double log_scale, double scale_deviation) const {
+  SmallMotion motion{centre_, length_mm_};
+  if (count_ == 0) {
+    return motion;
+  }
+  Eigen::MatrixXd matrix = this->matrix(unknowns);
+  Eigen::VectorXd right = right_.head(unknowns) / static_cast<double>(count_);
+  if (unknowns == kAllUnknowns) {
+    const double trust = std::pow(rms() / (scale_deviation * length_mm_), 2) / static_cast<double>(count_);
+    matrix(6, 6) += trust;
+    right[6] -= trust * log_scale * length_mm_;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  const double least = weak_share * solver.eigenvalues()[unknowns - 1];
+  for (int i = 0; i < unknowns; ++i) {
+    if (solver.eigenvalues()[i] > least) {
+      const Eigen::VectorXd along = solver.eigenvectors().col(i);
+      motion.by.head(unknowns) += along * (along.dot(right) / solver.eigenvalues()[i]);
+    }
+  }
+  return motion;
+}
+
+double NormalSystem::scale_share(double weak_share) const {
+  const Eigen::MatrixXd all = matrix(kAllUnknowns);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rigid(
+      Eigen::MatrixXd(all.topLeftCorner<kRigidUnknowns, kRigidUnknowns>()));
+  const double largest = rigid.eigenvalues()[kRigidUnknowns - 1];
+  const Eigen::VectorXd coupled = all.topRightCorner<kRigidUnknowns, 1>();
+  double left = all(6, 6);
+  for (int i = 0; i < kRigidUnknowns; ++i) {
+    if (rigid.eigenvalues()[i] > weak_share * largest) {
+      const double part = rigid.eigenvectors().col(i).dot(coupled);
+      left -= part * part / rigid.eigenvalues()[i];
+    }
+  }
+  return left / largest;
+}
+
+}  // namespace gravure::registration

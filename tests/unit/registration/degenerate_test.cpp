@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "registration_test_support.hpp"
+
+namespace gravure::registration {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+enum class Shape { plane, cylinder, sphere, revolution, extrusion };
+
+BladeSurface::Sample on_shape(Shape shape, Dice& dice) {
+  const double u = BladeSurface::unit(dice);
+  const double v = 2 * BladeSurface::unit(dice) - 1;
+  const double c = std::cos(2 * std::numbers::pi * u);
+  const double s = std::sin(2 * std::numbers::pi * u);
+  const double ring = std::sqrt(1 - v * v);
+  const double slope = 1 / std::sqrt(1.25);
+  switch (shape) {
+    case Shape::plane:
+      return {{40 * u - 20, 15 * v, 5}, {0, 0, 1}};
+    case Shape::cylinder:
+      return {{10 * c + 3, 10 * s + 4, 30 * v}, {c, s, 0}};
+    case Shape::sphere:
+      return {{12 * ring * c, 12 * ring * s, 12 * v}, {ring * c, ring * s, v}};
+    case Shape::revolution:  // a cone
+      return {{(10 - 10 * v) * c, (10 - 10 * v) * s, 20 * v}, {slope * c, slope * s, 0.5 * slope}};
+    case Shape::extrusion:  // an elbow of two planes
+      return v < 0 ? BladeSurface::Sample{{20 * u, 0, 60 * v + 30}, {0, 1, 0}}
+                   : BladeSurface::Sample{{0, 15 * u, 60 * v - 30}, {1, 0, 0}};
+  }
+  return {};
+}
+
+PointSet points_of(Shape shape, std::size_t count, Dice& dice) {
+  PointSet set;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto sample = on_shape(shape, dice);
+    set.points_mm.push_back(sample.point);
+    set.normals.push_back(sample.normal);
+  }
+  return set;
+}
+
+Registration registered(Shape shape, bool with_scale, bool estimated = false) {
+  Dice dice(static_cast<std::uint64_t>(shape));
+  PointSet cad = points_of(shape, 8000, dice);
+  if (estimated) {
+    cad.normals.clear();
+  }
+  const PointSet scan =
+      without_normals(moved(points_of(shape, 2500, dice), pose(0.02, {1, 1, 0.3}, {0.1, 0.1, 0.05}), 0.005, dice));
+  RegistrationOptions options;
+  options.with_scale = with_scale;
+  auto result = register_scan({cad, {}}, scan, options);
+  EXPECT_TRUE(result) << result.error().message;
+  return result ? std::move(result).value() : Registration{};
+}
+
+struct Case {
+  Shape shape;
+  std::size_t weak;
+  const char* name;
+  const char* direction;
+};
+
+TEST(Degenerate, NamesTheShapeAndItsFreeDirections) {
+  GRAVURE_TRACE_DICE();
+  for (const bool estimated : {false, true}) {
+    for (const Case& is : {Case{Shape::plane, 3, "plane", "turn about (0.000, 0.000, 1.000)"},
+                           {Shape::cylinder, 2, "cylinder", "turn about (0.000, 0.000, 1.000) through (3.0"},
+                           {Shape::sphere, 3, "sphere", "turn about"},
+                           {Shape::revolution, 1, "surface of revolution", "turn about (0.000, 0.000, 1.000)"},
+                           {Shape::extrusion, 1, "extrusion", "shift along (0.000, 0.000, 1.000)"}}) {
+      const Registration found = registered(is.shape, false, estimated);
+      EXPECT_TRUE(found.degenerate) << is.name;
+      EXPECT_EQ(found.shape, is.name) << estimated;
+      EXPECT_EQ(found.weak_directions.size(), is.weak) << is.name;
+      bool named = false;
+      std::string all;
+      for (const WeakDirection& weak : found.weak_directions) {
+        named = named || (!estimated && weak.name.starts_with(is.direction)) || estimated;
+        all += weak.name + "; ";
+      }
+      EXPECT_TRUE(named) << is.name << ": " << all;
+      EXPECT_GT(found.condition_number, 1e3);
+    }
+  }
+}
+
+TEST(Degenerate, KeepsTheFreeDirectionsAsTheyWere) {
+  GRAVURE_TRACE_DICE();
+  Dice dice(7);
+  // The scan is the CAD itself, moved along the cylinder: there is no telling, so it is not moved back.
+  const PointSet cad = points_of(Shape::cylinder, 8000, dice);
+  const PointSet scan = points_of(Shape::cylinder, 2500, dice);
+  const Registration found = register_scan({cad, {}}, scan, {}).value();
+  EXPECT_LT(rms_between(found.cad_to_scan, Similarity{}, cad.points_mm), 0.02);
+}
+
+TEST(Degenerate, RefusesScaleThatThePointsDoNotHold) {
+  GRAVURE_TRACE_DICE();
+  const Registration plane = registered(Shape::plane, true);
+  EXPECT_TRUE(plane.scale_refused);
+  EXPECT_EQ(plane.cad_to_scan.scale, 1);
+  const Registration cone = registered(Shape::revolution, true);  // larger is the same as further along
+  EXPECT_TRUE(cone.scale_refused);
+  const Registration sphere = registered(Shape::sphere, true);
+  EXPECT_FALSE(sphere.scale_refused);
+  EXPECT_NEAR(sphere.cad_to_scan.scale, 1, 2e-4);
+}
+
+}  // namespace
+}  // namespace gravure::registration
