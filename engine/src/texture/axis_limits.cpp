@@ -11,9 +11,9 @@ using kinematics::Vector3;
 SevenLimits published_limits() noexcept {
   // The jerk that reaches the acceleration in 10 ms on stages, in 20 ms on the galvo.
   const auto stage = [](double speed, double acceleration) {
-    return AxisLimits{speed, acceleration, acceleration * 100};
+    return AxisBounds{speed, acceleration, acceleration * 100};
   };
-  const AxisLimits galvo{2000, 20'000, 1'000'000};
+  const AxisBounds galvo{2000, 20'000, 1'000'000};
   return {stage(100, 100), stage(100, 100), stage(100, 50), stage(1, 1.994), stage(6, 3.734), galvo, galvo};
 }
 

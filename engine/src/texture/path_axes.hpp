@@ -8,6 +8,14 @@ namespace gravure::texture {
 
 inline constexpr std::size_t kStageAxes = 5;
 
+/// Between two points of a path: `share` 0 to 1 of the way from point `index` to the next. Apart, because a number of
+/// points as one double is too coarse for third differences.
+struct Place {
+  std::size_t index = 0;
+  double share = 0;
+  double points() const noexcept { return static_cast<double>(index) + share; }
+};
+
 /// X, Y, Z, A, C.
 inline std::array<double, kStageAxes> stages_of(const SevenAxes& at) noexcept {
   return {at.x_mm, at.y_mm, at.z_mm, at.a_rad, at.c_rad};

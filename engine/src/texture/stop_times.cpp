@@ -31,7 +31,7 @@ std::vector<std::size_t> resting_points(std::span<const SurfacePoint> targets, S
   return found;
 }
 
-double rest_to_rest_s(double distance, const AxisLimits& limits) {
+double rest_to_rest_s(double distance, const AxisBounds& limits) {
   motion::JerkRequest request;
   request.move = {std::abs(distance), limits.speed, limits.acceleration, limits.acceleration};
   request.jerk_up_mm_s3 = limits.jerk;

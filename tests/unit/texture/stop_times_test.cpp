@@ -23,7 +23,7 @@ TEST(RestToRest, TakesThePublishedTimesForOneStep) {
 
 /// [A] table 1 as printed and without jerk limit, planar: 65,535 exact stops.
 TEST(RestToRest, DecidesHowTheJerkOfTableOneIsRead) {
-  const auto minutes = [](AxisLimits limits, double jerk) {
+  const auto minutes = [](AxisBounds limits, double jerk) {
     limits.jerk = jerk;
     return 65'535 * rest_to_rest_s(kStep_mm, limits) / 60;
   };

@@ -8,14 +8,14 @@
 namespace gravure::texture {
 
 /// How fast an axis may move, accelerate and change its acceleration: mm or rad per s, s^2 and s^3; all above 0.
-struct AxisLimits {
+struct AxisBounds {
   double speed = 0;
   double acceleration = 0;
   double jerk = 0;
 };
 
 /// In the order of kPathAxes: X, Y, Z, A, C, U, V.
-using SevenLimits = std::array<AxisLimits, kPathAxes.size()>;
+using SevenLimits = std::array<AxisBounds, kPathAxes.size()>;
 
 /// The machine of [A] table 1, its jerk read as m/s^2 per ms. Accelerations and jerks of X, Y, U and V follow from the
 /// published times of one step of the texture (89.84052 ms and 17.12208 ms); those of A and C are fitted to the times

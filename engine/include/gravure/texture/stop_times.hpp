@@ -22,7 +22,7 @@ std::vector<std::size_t> resting_points(std::span<const SurfacePoint> targets, S
 
 /// Shortest time of one axis from rest to rest: motion::plan_profile() with equal limits to both sides, [A] section on
 /// efficiency. Limits must be above 0.
-double rest_to_rest_s(double distance, const AxisLimits& limits);
+double rest_to_rest_s(double distance, const AxisBounds& limits);
 
 /// The time model of [A]: at every one of `stops` the axes `first` to `last` (of kPathAxes) rest, between two of them
 /// the slowest counts. `last` is one past.

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gravure/core/path_motion.hpp"
+#include "gravure/core/progress.hpp"
+#include "gravure/texture/axes.hpp"
+#include "gravure/texture/axis_limits.hpp"
+#include "gravure/texture/prove_limits.hpp"
+#include "gravure/texture/stop_times.hpp"
+
+namespace gravure::texture {
+
+/// What is to be run: the points of a path on the surface, and the axes at each (seven_axes()).
+struct PathTimingRequest {
+  std::span<const SurfacePoint> targets;
+  std::span<const SevenAxes> axes;
+  std::span<const double> pulse_mm;  ///< PathInstant::along_mm at each point: pulse_lengths_mm()
+  RotaryTable table;
+  SevenLimits limits;
+  Stops stops = Stops::corners;
+  double servo_s = 50e-6;
+  /// The stages' place along the path is the texture's, averaged over a window of which this is the standard deviation.
+  /// 0: a quarter of the time that `sigma_points` take, but from 5 to 40 ms.
+  double smoothing_s = 0;
+  double sigma_points = 0;  ///< of the split, in points; what the stages have been smoothed by already
+};
+
+/// Motion along a path within limits. It holds what it needs of the request.
+struct TimedPath {
+  std::shared_ptr<const PathMotion> motion;
+  double time_s = 0;       ///< of all instants, lead-in and run-out of the stages included
+  double smoothing_s = 0;  ///< as it was chosen
+  std::size_t runs = 0;    ///< moves from rest to rest
+  std::size_t slowed = 0;  ///< those of them that the stages' limits have made slower
+  int passes = 0;          ///< times that the limits were looked at before none was broken
+};
+
+/// Motion of all seven axes. Between two resting points the spot makes the shortest jerk-limited move from rest to rest
+/// that U and V can, straight over the plane, lengthened to whole servo periods; at each it stands exactly on its
+/// point. The stages do not rest: they follow the split's path (cubic splines through its points) by the texture's own
+/// place along it, smoothed in time, and U and V reach from there to the spot: [U V w] = M (p - p'), both moving.
+/// Where stages would leave their limits the moves round there are slowed until none does. Looks at two places or more
+/// a point; prove_limits() and prove_seven_axes() look at every instant.
+/// out_of_range for fewer than two points, a servo period or limits that are not above 0, or points that no timing can
+/// keep within limits (a jump of an axis); cancelled on request.
+Result<TimedPath> time_seven_axes(const PathTimingRequest& request, const CancelToken& cancel);
+
+/// Motion whose every instant has been looked at.
+struct ProvenPath {
+  TimedPath path;
+  std::vector<LimitUse> uses;  ///< of the last proof; broken() says what is left, in practice nothing
+  int proofs = 0;
+};
+/// time_seven_axes(), proved by prove_limits(): what that finds broken is slowed and proved again, at most 12 times.
+Result<ProvenPath> prove_seven_axes(const PathTimingRequest& request, const CancelToken& cancel);
+
+/// The same path by the stages alone, U and V at 0; `axes` are those that bring the stages to each point of `targets`.
+/// They run straight in their own coordinates from one resting point to the next, in curves through the points between.
+Result<TimedPath> time_five_axes(const PathTimingRequest& request, const CancelToken& cancel);
+
+}  // namespace gravure::texture

@@ -1,0 +1,100 @@
+#include "path_instants.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gravure::texture {
+namespace {
+
+/// How far along runs the texture is, period by period: the profile of a run is made when it begins.
+class RunCursor {
+ public:
+  RunCursor(const PathRuns& path, std::int64_t period) : path_(path), run_(path.run_at(period)) { enter(); }
+  /// Periods rise from call to call; before the start and behind the end the ends stand still.
+  void go_to(std::int64_t period) {
+    bool moved = false;
+    while (run_ + 1 < path_.runs().size() && period >= path_.runs()[run_ + 1].start) {
+      ++run_;
+      moved = true;
+    }
+    if (moved) {
+      enter();
+    }
+    const PathRun& at = run();
+    const std::int64_t in_run = std::max<std::int64_t>(period - at.start, 0);
+    run_mm_ =
+        in_run >= at.periods ? at.length_mm : profile_.at(static_cast<double>(in_run) * path_.period_s()).position_mm;
+  }
+  const PathRun& run() const { return path_.runs()[run_]; }
+  double run_mm() const { return run_mm_; }
+  Place place() const { return PathRuns::place(run(), run_mm_); }
+
+ private:
+  void enter() { profile_ = path_.profile(run()); }
+  const PathRuns& path_;
+  std::size_t run_;
+  motion::Profile profile_;
+  double run_mm_ = 0;
+};
+
+double between(const std::vector<double>& values, const Place& place) {
+  const double from = values[place.index];
+  const double to = values[place.index + 1];
+  return place.share >= 1 ? to : from + place.share * (to - from);
+}
+
+Result<void> check_range(std::int64_t first, std::size_t size, std::int64_t instants) {
+  if (first < 0 || first > instants || static_cast<std::int64_t>(size) > instants - first) {
+    return Error{ErrorCode::out_of_range, fmt::format("instants {} to {} of a motion that has {}", first,
+                                                      first + static_cast<std::int64_t>(size), instants)};
+  }
+  return {};
+}
+
+}  // namespace
+
+SevenAxisMotion::SevenAxisMotion(PathRuns path, StageSpline stages, SmoothPlace place, std::vector<double> pulse_mm,
+                                 const RotaryTable& table)
+    : path_(std::move(path)),
+      stages_(std::move(stages)),
+      place_(std::move(place)),
+      pulse_mm_(std::move(pulse_mm)),
+      table_(table) {}
+
+Result<void> SevenAxisMotion::read(std::int64_t first, std::span<PathInstant> out) const {
+  GRAVURE_CHECK(check_range(first, out.size(), instants()));
+  RunCursor cursor(path_, first - lead());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const std::int64_t period = first + static_cast<std::int64_t>(k) - lead();
+    cursor.go_to(period);
+    const StageValues stages = stages_.at(place_.at(period));
+    const Vector3 spot = table_.turned(stages[3], stages[4], path_.position(cursor.run(), cursor.run_mm()));
+    PathInstant& at = out[k];
+    std::copy(stages.begin(), stages.end(), at.axes.begin());
+    at.axes[5] = spot.x() - stages[0];
+    at.axes[6] = spot.y() - stages[1];
+    at.along_mm = between(pulse_mm_, cursor.place());
+  }
+  return {};
+}
+
+FiveAxisMotion::FiveAxisMotion(PathRuns path, StageSpline stages, std::vector<double> pulse_mm)
+    : path_(std::move(path)), stages_(std::move(stages)), pulse_mm_(std::move(pulse_mm)) {}
+
+Result<void> FiveAxisMotion::read(std::int64_t first, std::span<PathInstant> out) const {
+  GRAVURE_CHECK(check_range(first, out.size(), instants()));
+  RunCursor cursor(path_, first);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    cursor.go_to(first + static_cast<std::int64_t>(k));
+    const StageValues stages = stages_.at(cursor.place());
+    PathInstant& at = out[k];
+    at = {};
+    std::copy(stages.begin(), stages.end(), at.axes.begin());
+    at.along_mm = between(pulse_mm_, cursor.place());
+  }
+  return {};
+}
+
+}  // namespace gravure::texture

@@ -1,0 +1,159 @@
+#include "path_runs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gravure/motion/plan_profile.hpp"
+
+namespace gravure::texture {
+namespace {
+
+/// Slope of the surface along a direction of the plane, by its normal.
+double slope(const SurfacePoint& point, const Vector2& along) {
+  return -point.normal.head<2>().dot(along) / point.normal.z();
+}
+
+/// Integral of the position of a profile from its start to `time_s`.
+double travelled(const motion::Profile& profile, double time_s) {
+  double sum = 0;
+  for (std::size_t k = 0; k < profile.durations_s.size(); ++k) {
+    const double h = std::min(profile.durations_s[k], time_s - profile.times_s[k]);
+    if (h <= 0) {
+      continue;
+    }
+    sum += h * (profile.position_mm[k] + h * (profile.velocity_mm_s[k] / 2 + h * (profile.acceleration_mm_s2[k] / 6 +
+                                                                                  h * profile.jerk_mm_s3[k] / 24)));
+  }
+  const double beyond = time_s - profile.times_s[7];
+  return beyond > 0 ? sum + beyond * profile.stroke_mm : sum;
+}
+
+}  // namespace
+
+PathRuns::PathRuns(std::vector<SurfacePoint> targets, std::span<const std::size_t> stops, double period_s)
+    : targets_(std::move(targets)), period_s_(period_s) {
+  runs_.reserve(stops.size());
+  for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
+    PathRun run;
+    run.first = stops[k];
+    run.count = stops[k + 1] - stops[k];
+    run.length_mm = (targets_[stops[k + 1]].position_mm - targets_[stops[k]].position_mm).head<2>().norm();
+    runs_.push_back(run);
+  }
+}
+
+motion::Profile PathRuns::profile(const PathRun& run) const {
+  motion::JerkRequest request;
+  request.move = {run.length_mm, run.caps.speed, run.caps.acceleration, run.caps.acceleration};
+  request.jerk_up_mm_s3 = run.caps.jerk;
+  request.jerk_down_mm_s3 = run.caps.jerk;
+  const Result<motion::Profile> planned = motion::plan_profile(request);
+  if (!planned || planned.value().access_time_s() <= 0) {
+    return {};
+  }
+  const double time_s = planned.value().access_time_s() * run.stretch;
+  constexpr double kSame = 1e-9;  // of a period: what rounding may add
+  const double periods = std::max(1.0, std::ceil(time_s / period_s_ - kSame));
+  return motion::slow_down(planned.value(), std::max(1.0, periods * period_s_ / planned.value().access_time_s()));
+}
+
+void PathRuns::schedule() {
+  std::int64_t start = 0;
+  for (PathRun& run : runs_) {
+    run.start = start;
+    run.periods = std::llround(profile(run).access_time_s() / period_s_);
+    start += run.periods;
+  }
+}
+
+std::size_t PathRuns::run_at(std::int64_t period) const noexcept {
+  const auto after = std::upper_bound(runs_.begin(), runs_.end(), period,
+                                      [](std::int64_t at, const PathRun& run) { return at < run.start; });
+  return after == runs_.begin() ? 0 : static_cast<std::size_t>(after - runs_.begin()) - 1;
+}
+
+Place PathRuns::place(const PathRun& run, double run_mm) noexcept {
+  const double share = run.length_mm > 0 ? std::clamp(run_mm / run.length_mm, 0.0, 1.0) : 1;
+  const double in_run = share * static_cast<double>(run.count);
+  const std::size_t k = std::min(static_cast<std::size_t>(in_run), run.count - 1);
+  return {run.first + k, in_run - static_cast<double>(k)};
+}
+
+Vector3 PathRuns::position(const PathRun& run, double run_mm) const noexcept {
+  return spot(run, run_mm).position_mm;
+}
+
+SpotState PathRuns::spot(const PathRun& run, double run_mm) const noexcept {
+  const Place at = place(run, run_mm);
+  const double u = at.share;
+  const SurfacePoint& a = targets_[at.index];
+  const SurfacePoint& b = targets_[at.index + 1];
+  const Vector3 step = b.position_mm - a.position_mm;
+  const double length = step.head<2>().norm();
+  SpotState state;
+  if (length <= 0) {
+    state.position_mm = b.position_mm;
+    return state;
+  }
+  const Vector2 along = step.head<2>() / length;
+  const double from = slope(a, along) * length;
+  const double to = slope(b, along) * length;
+  // Hermite: the chord, and what leaves it with the slopes of both ends.
+  const double left = from - step.z();
+  const double right = to - step.z();
+  const double w = 1 - u;
+  const double off = u * w * (w * left - u * right);
+  const double off_first = w * (1 - 3 * u) * left - u * (2 - 3 * u) * right;
+  const double off_second = (6 * u - 4) * left - (2 - 6 * u) * right;
+  state.position_mm = a.position_mm + u * step;
+  state.position_mm.z() += off;
+  state.tangent = Vector3(along.x(), along.y(), (step.z() + off_first) / length);
+  state.bend_per_mm = off_second / (length * length);
+  return state;
+}
+
+std::vector<double> mean_places(const PathRuns& path, std::int64_t cell) {
+  const std::vector<PathRun>& runs = path.runs();
+  const double h = path.period_s();
+  const auto last = static_cast<double>(runs.back().first + runs.back().count);
+  const std::int64_t cells = (2 * path.periods() + cell) / (2 * cell) + 2;  // the last of them rests at the end
+  std::vector<double> means;
+  means.reserve(static_cast<std::size_t>(cells));
+  std::size_t r = 0;
+  motion::Profile profile = path.profile(runs[0]);
+  // Half periods, so that odd cells have whole ends too.
+  for (std::int64_t k = 0; k < cells; ++k) {
+    const std::int64_t from2 = (2 * k - 1) * cell;
+    const std::int64_t to2 = from2 + 2 * cell;
+    const double base = static_cast<double>(runs[r].first);
+    double sum = 0;  // of place - base, in half periods
+    if (from2 < 0) {
+      sum -= static_cast<double>(-from2) * base;
+    }
+    for (;;) {
+      const std::int64_t start2 = 2 * runs[r].start;
+      const std::int64_t end2 = start2 + 2 * runs[r].periods;
+      const std::int64_t a = std::max({from2, start2, std::int64_t{0}});
+      const std::int64_t b = std::min(to2, end2);
+      if (b > a && runs[r].length_mm > 0) {
+        const auto seconds = [&](std::int64_t half) { return static_cast<double>(half - start2) * h / 2; };
+        const double moved = (travelled(profile, seconds(b)) - travelled(profile, seconds(a))) * 2 / h;
+        sum += static_cast<double>(b - a) * (static_cast<double>(runs[r].first) - base) +
+               moved * static_cast<double>(runs[r].count) / runs[r].length_mm;
+      }
+      if (end2 >= to2 || r + 1 == runs.size()) {
+        break;
+      }
+      profile = path.profile(runs[++r]);
+    }
+    const std::int64_t end2 = 2 * path.periods();
+    if (to2 > end2) {
+      sum += static_cast<double>(to2 - std::max(from2, end2)) * (last - base);
+    }
+    means.push_back(base + sum / static_cast<double>(2 * cell));
+  }
+  means.back() = last;
+  return means;
+}
+
+}  // namespace gravure::texture

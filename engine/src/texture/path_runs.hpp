@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gravure/motion/profile.hpp"
+#include "gravure/texture/axis_limits.hpp"
+#include "gravure/texture/surface.hpp"
+#include "path_axes.hpp"
+
+namespace gravure::texture {
+
+/// A move from rest to rest, over `count` segments of equal length in the plane.
+struct PathRun {
+  std::size_t first = 0;  ///< point
+  std::size_t count = 1;
+  double length_mm = 0;      ///< in the plane
+  AxisBounds caps;           ///< of the length run in the plane
+  double stretch = 1;        ///< >= 1: so much slower than the caps allow
+  std::int64_t periods = 0;  ///< it lasts
+  std::int64_t start = 0;    ///< period, the first run's being 0
+};
+
+/// Where a spot is on the surface.
+struct SpotState {
+  Vector3 position_mm = Vector3::Zero();
+  Vector3 tangent = Vector3::UnitX();  ///< by the length run in the plane
+  double bend_per_mm = 0;              ///< of z, second derivative by that length
+};
+
+/// The moves of a path and their times.
+class PathRuns {
+ public:
+  PathRuns() = default;
+  PathRuns(std::vector<SurfacePoint> targets, std::span<const std::size_t> stops, double period_s);
+
+  std::vector<PathRun>& runs() noexcept { return runs_; }
+  const std::vector<PathRun>& runs() const noexcept { return runs_; }
+  const std::vector<SurfacePoint>& targets() const noexcept { return targets_; }
+  double period_s() const noexcept { return period_s_; }
+  /// Periods of all runs; known after schedule().
+  std::int64_t periods() const noexcept { return runs_.empty() ? 0 : runs_.back().start + runs_.back().periods; }
+
+  /// The shortest move under the caps, stretched, then to whole periods.
+  motion::Profile profile(const PathRun& run) const;
+  /// Sets periods and start of every run.
+  void schedule();
+  /// The run that period `period` falls into; at the end of one the next.
+  std::size_t run_at(std::int64_t period) const noexcept;
+  /// Where the spot is after `run_mm` of a run.
+  static Place place(const PathRun& run, double run_mm) noexcept;
+  /// Points are joined straight in the plane; z by cubics that meet the normals.
+  Vector3 position(const PathRun& run, double run_mm) const noexcept;
+  SpotState spot(const PathRun& run, double run_mm) const noexcept;
+
+ private:
+  std::vector<SurfacePoint> targets_;
+  std::vector<PathRun> runs_;
+  double period_s_ = 0;
+};
+
+/// The mean of the texture's place over cells of `cell` periods, for SmoothPlace.
+std::vector<double> mean_places(const PathRuns& path, std::int64_t cell);
+
+}  // namespace gravure::texture

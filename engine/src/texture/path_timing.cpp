@@ -1,0 +1,91 @@
+#include "gravure/texture/path_timing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "path_instants.hpp"
+#include "seven_axis_planner.hpp"
+#include "slow_stages.hpp"
+
+namespace gravure::texture {
+namespace {
+
+Result<void> check_request(const PathTimingRequest& request) {
+  if (request.targets.size() < 2 || request.axes.size() != request.targets.size() ||
+      request.pulse_mm.size() != request.targets.size()) {
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("a path of {} points with axes at {} and lengths at {}: must be 2 points or more, with both "
+                    "at each",
+                    request.targets.size(), request.axes.size(), request.pulse_mm.size())};
+  }
+  if (!(request.servo_s > 0 && request.servo_s <= 1)) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("servo period {} s: must be above 0, at most 1", request.servo_s)};
+  }
+  return check_limits(request.limits);
+}
+
+}  // namespace
+
+Result<TimedPath> time_seven_axes(const PathTimingRequest& request, const CancelToken& cancel) {
+  GRAVURE_CHECK(check_request(request));
+  SevenAxisPlanner planner(request);
+  GRAVURE_CHECK(planner.settle(cancel));
+  return planner.timed();
+}
+
+Result<ProvenPath> prove_seven_axes(const PathTimingRequest& request, const CancelToken& cancel) {
+  constexpr int kMostProofs = 12;
+  constexpr std::size_t kMostBreaches = 1'000'000;
+  GRAVURE_CHECK(check_request(request));
+  SevenAxisPlanner planner(request);
+  ProvenPath proven;
+  for (;;) {
+    GRAVURE_CHECK(planner.settle(cancel));
+    proven.path = planner.timed();
+    ++proven.proofs;
+    std::vector<LimitUse> breaches;
+    GRAVURE_TRY(proven.uses, prove_limits(*proven.path.motion, request.limits, request.servo_s, cancel,
+                                          [&breaches](const LimitUse& breach) {
+                                            if (breaches.size() < kMostBreaches) {
+                                              breaches.push_back(breach);
+                                            }
+                                          }));
+    if (breaches.empty() || proven.proofs == kMostProofs) {
+      return proven;
+    }
+    planner.lower(breaches);
+  }
+}
+
+Result<TimedPath> time_five_axes(const PathTimingRequest& request, const CancelToken& cancel) {
+  GRAVURE_CHECK(check_request(request));
+  const std::vector<std::size_t> stops = resting_points(request.targets, request.stops);
+  PathRuns path({request.targets.begin(), request.targets.end()}, stops, request.servo_s);
+  const StageSpline stages(request.axes, stops);
+  for (PathRun& run : path.runs()) {
+    if (cancel.cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped while the path was being timed"};
+    }
+    if (const auto axis = cap_by_stages(request.limits, stages, path, run)) {
+      return Error{ErrorCode::out_of_range,
+                   fmt::format("axis {} cannot be kept within its limits behind point {}, however slow: does it jump "
+                               "there?",
+                               kPathAxes[*axis], run.first)};
+    }
+  }
+  path.schedule();
+  TimedPath timed;
+  timed.runs = path.runs().size();
+  timed.slowed = static_cast<std::size_t>(
+      std::count_if(path.runs().begin(), path.runs().end(), [](const PathRun& run) { return run.stretch > 1; }));
+  timed.passes = 1;
+  timed.motion = std::make_shared<FiveAxisMotion>(
+      std::move(path), stages, std::vector<double>(request.pulse_mm.begin(), request.pulse_mm.end()));
+  timed.time_s = static_cast<double>(timed.motion->instants() - 1) * request.servo_s;
+  return timed;
+}
+
+}  // namespace gravure::texture

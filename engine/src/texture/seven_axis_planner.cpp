@@ -1,0 +1,105 @@
+#include "seven_axis_planner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "slow_stages.hpp"
+
+namespace gravure::texture {
+namespace {
+
+constexpr int kMostPasses = 300;
+constexpr double kSpread = 0.7637626158259734;  ///< of SmoothPlace, in cells: (7 / 12)^(1/2)
+
+double smoothing_s(const PathTimingRequest& request, const PathRuns& path) {
+  if (request.smoothing_s > 0) {
+    return request.smoothing_s;
+  }
+  constexpr double kLeast_s = 0.005;
+  constexpr double kMost_s = 0.04;
+  const double point_s =
+      static_cast<double>(path.periods()) * path.period_s() / static_cast<double>(request.targets.size() - 1);
+  return std::clamp(request.sigma_points * point_s / 4, kLeast_s, kMost_s);
+}
+
+}  // namespace
+
+SevenAxisPlanner::SevenAxisPlanner(const PathTimingRequest& request)
+    : request_(request),
+      path_({request.targets.begin(), request.targets.end()}, resting_points(request.targets, request.stops),
+            request.servo_s) {
+  const std::size_t ends[] = {0, request.targets.size() - 1};
+  stages_ = StageSpline(request.axes, ends);
+  cap_by_galvo(request, stages_, nullptr, path_);
+  path_.schedule();
+  cell_ = std::max<std::int64_t>(2, std::llround(smoothing_s(request, path_) / kSpread / request.servo_s));
+  place_stages();
+}
+
+void SevenAxisPlanner::place_stages() {
+  place_ = SmoothPlace(mean_places(path_, cell_), cell_, request_.targets.size());
+}
+
+Result<void> SevenAxisPlanner::settle(const CancelToken& cancel) {
+  // What the stages take of the galvo is looked at once more when they have been slowed: it only gets less.
+  for (int pass = 0;; ++pass) {
+    if (cancel.cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped while the path was being timed"};
+    }
+    ++passes_;
+    const SlowDown slow = slow_stages(request_.limits, stages_, place_, path_);
+    if (slow.needed && pass == kMostPasses) {
+      return Error{
+          ErrorCode::out_of_range,
+          fmt::format("axis {} cannot be kept within its limits near point {}, however slow: does it jump there?",
+                      kPathAxes[slow.axis], slow.point)};
+    }
+    if (slow.needed) {
+      path_.schedule();
+      place_stages();
+    } else if (pass > 0) {
+      return {};
+    }
+    if (pass == 0) {
+      cap_by_galvo(request_, stages_, &place_, path_);
+      path_.schedule();
+      place_stages();
+    }
+  }
+}
+
+void SevenAxisPlanner::lower(const std::vector<LimitUse>& breaches) {
+  constexpr double kMore = 1.001;
+  std::vector<double> factors(path_.runs().size(), 1.0);
+  for (const LimitUse& breach : breaches) {
+    const double power = breach.kind == LimitKind::speed ? 1 : breach.kind == LimitKind::acceleration ? 2 : 3;
+    const double factor = kMore * std::pow(breach.share(), 1 / power);
+    const std::int64_t period = breach.instant - SmoothPlace::kReach * cell_;
+    const std::int64_t reach = breach.axis < kStageAxes ? cell_ + cell_ / 2 : 1;
+    for (std::size_t r = path_.run_at(period - reach); r <= path_.run_at(period + reach); ++r) {
+      factors[r] = std::max(factors[r], factor);
+    }
+  }
+  for (std::size_t r = 0; r < factors.size(); ++r) {
+    path_.runs()[r].stretch *= factors[r];
+  }
+  path_.schedule();
+  place_stages();
+}
+
+TimedPath SevenAxisPlanner::timed() const {
+  TimedPath timed;
+  timed.runs = path_.runs().size();
+  timed.slowed = static_cast<std::size_t>(
+      std::count_if(path_.runs().begin(), path_.runs().end(), [](const PathRun& run) { return run.stretch > 1; }));
+  timed.passes = passes_;
+  timed.smoothing_s = static_cast<double>(cell_) * kSpread * request_.servo_s;
+  timed.motion = std::make_shared<SevenAxisMotion>(
+      path_, stages_, place_, std::vector<double>(request_.pulse_mm.begin(), request_.pulse_mm.end()), request_.table);
+  timed.time_s = static_cast<double>(timed.motion->instants() - 1) * request_.servo_s;
+  return timed;
+}
+
+}  // namespace gravure::texture

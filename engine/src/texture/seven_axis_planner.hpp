@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "gravure/texture/path_timing.hpp"
+#include "gravure/texture/prove_limits.hpp"
+#include "path_instants.hpp"
+
+namespace gravure::texture {
+
+/// Finds the times of all runs: first by the galvo, then slower where stages need it.
+class SevenAxisPlanner {
+ public:
+  /// The request must be in order, and outlive the planner.
+  explicit SevenAxisPlanner(const PathTimingRequest& request);
+  /// Slows runs until no look finds a stage beyond its limits.
+  Result<void> settle(const CancelToken& cancel);
+  /// Slows the runs round what a proof has found.
+  void lower(const std::vector<LimitUse>& breaches);
+  TimedPath timed() const;
+
+ private:
+  void place_stages();
+  const PathTimingRequest& request_;
+  PathRuns path_;
+  StageSpline stages_;
+  SmoothPlace place_;
+  std::int64_t cell_ = 2;
+  int passes_ = 0;
+};
+
+}  // namespace gravure::texture

@@ -1,0 +1,230 @@
+#include "slow_stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gravure::texture {
+namespace {
+
+/// Stages and their derivatives by time.
+struct StageRates {
+  StageValues speed{};
+  StageValues acceleration{};
+  StageValues jerk{};
+};
+
+StageRates rates(const StageState& at, const PlaceState& place) {
+  StageRates r;
+  const double v = place.speed;
+  for (std::size_t k = 0; k < kStageAxes; ++k) {
+    r.speed[k] = at.first[k] * v;
+    r.acceleration[k] = at.second[k] * v * v + at.first[k] * place.acceleration;
+    r.jerk[k] = at.third[k] * v * v * v + 3 * at.second[k] * v * place.acceleration + at.first[k] * place.jerk;
+  }
+  return r;
+}
+
+struct Need {
+  double factor = 0;  ///< how much slower; up to 1: within limits
+  std::size_t axis = 0;
+};
+
+Need need_of(const SevenLimits& limits, const StageRates& r) {
+  Need need;
+  for (std::size_t k = 0; k < kStageAxes; ++k) {
+    const double factor = std::max({std::abs(r.speed[k]) / limits[k].speed,
+                                    std::sqrt(std::abs(r.acceleration[k]) / limits[k].acceleration),
+                                    std::cbrt(std::abs(r.jerk[k]) / limits[k].jerk)});
+    if (factor > need.factor) {
+      need = {factor, k};
+    }
+  }
+  return need;
+}
+
+/// What the motion of the stages takes of the galvo's speed, acceleration and jerk.
+struct Taken {
+  double speed = 0;
+  double acceleration = 0;
+  double jerk = 0;
+};
+
+Taken taken_by(const StageRates& r, double reach_mm, const motion::Profile& profile, const SpotState& spot,
+               double tilt) {
+  const double w = std::abs(r.speed[3]) + std::abs(r.speed[4]);
+  const double w_dot = std::abs(r.acceleration[3]) + std::abs(r.acceleration[4]);
+  const double w_2 = w * w + w_dot;
+  const double w_3 = w * w * w + 3 * w * w_dot + std::abs(r.jerk[3]) + std::abs(r.jerk[4]);
+  const double v = profile.peak_velocity_mm_s * spot.tangent.norm();
+  const double a = profile.peak_acceleration_up_mm_s2 * spot.tangent.norm();
+  const double bend = std::abs(spot.bend_per_mm) * tilt;
+  const auto most = [](const StageValues& of) { return std::max(std::abs(of[0]), std::abs(of[1])); };
+  return {most(r.speed) + w * reach_mm, most(r.acceleration) + w_2 * reach_mm + 2 * w * v + bend * v * v,
+          most(r.jerk) + w_3 * reach_mm + 3 * w_2 * v + 3 * w * a + 3 * bend * v * a};
+}
+
+/// A limit with what is taken of it gone, though never less than a third of it.
+double left(double limit, double taken) {
+  constexpr double kKept = 0.999;
+  return std::max(limit * kKept - taken, limit / 3);
+}
+
+}  // namespace
+
+void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, const SmoothPlace* place,
+                  PathRuns& path) {
+  for (PathRun& run : path.runs()) {
+    const motion::Profile before = place != nullptr ? path.profile(run) : motion::Profile();
+    Taken taken;
+    double u = 0;
+    double v = 0;
+    const std::size_t looks = run.count;
+    for (std::size_t k = 0; k <= looks; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(looks);
+      const SpotState spot = path.spot(run, share * run.length_mm);
+      StageRates at_rest;
+      StageValues pose = stages_of(request.axes[run.first + k]);
+      if (place != nullptr) {
+        const PlaceState where =
+            place->state(static_cast<double>(run.start) + share * static_cast<double>(run.periods), path.period_s());
+        const StageState state = stages.state(where.place);
+        pose = state.value;
+        at_rest = rates(state, where);
+      }
+      const Taken here = taken_by(at_rest, (spot.position_mm - request.table.centre_mm).norm(), before, spot,
+                                  std::abs(std::sin(pose[3])));
+      taken = {std::max(taken.speed, here.speed), std::max(taken.acceleration, here.acceleration),
+               std::max(taken.jerk, here.jerk)};
+      const Vector3 direction = request.table.turned(pose[3], pose[4], spot.tangent + request.table.centre_mm);
+      u = std::max(u, std::abs(direction.x()));
+      v = std::max(v, std::abs(direction.y()));
+    }
+    constexpr double kLeast = 1e-9;  // a run straight along the beam has to end too
+    const auto cap = [&](double of_u, double of_v, double gone) {
+      return std::min(left(of_u, gone) / std::max(u, kLeast), left(of_v, gone) / std::max(v, kLeast));
+    };
+    const SevenLimits& limits = request.limits;
+    run.caps = {cap(limits[5].speed, limits[6].speed, taken.speed),
+                cap(limits[5].acceleration, limits[6].acceleration, taken.acceleration),
+                cap(limits[5].jerk, limits[6].jerk, taken.jerk)};
+  }
+}
+
+namespace {
+
+/// How much slower each run must get, found spread over its neighbours.
+class Needs {
+ public:
+  explicit Needs(const PathRuns& path) : path_(path), factors_(path.runs().size(), 1.0) {}
+  void add(double from_period, double to_period, double factor) {
+    const std::size_t first = path_.run_at(static_cast<std::int64_t>(std::floor(from_period)));
+    const std::size_t last = path_.run_at(static_cast<std::int64_t>(std::ceil(to_period)));
+    for (std::size_t r = first; r <= last; ++r) {
+      factors_[r] = std::max(factors_[r], factor);
+    }
+  }
+  /// Falls off by e within `spread` periods.
+  const std::vector<double>& spread(double spread) {
+    for (std::size_t r = 1; r < factors_.size(); ++r) {
+      fade(factors_[r - 1], factors_[r], path_.runs()[r], spread);
+    }
+    for (std::size_t r = factors_.size() - 1; r > 0; --r) {
+      fade(factors_[r], factors_[r - 1], path_.runs()[r - 1], spread);
+    }
+    return factors_;
+  }
+
+ private:
+  static void fade(double from, double& to, const PathRun& over, double spread) {
+    constexpr double kNothing = 1e-6;
+    const double left = (from - 1) * std::exp(-static_cast<double>(over.periods) / spread);
+    to = left > kNothing ? std::max(to, 1 + left) : to;
+  }
+  const PathRuns& path_;
+  std::vector<double> factors_;
+};
+
+}  // namespace
+
+SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, PathRuns& path) {
+  constexpr double kAllowed = 0.9995;  // of the factor: between two looks nothing is seen
+  constexpr double kMore = 1.002;      // so that the next pass is the last
+  Needs needs(path);
+  SlowDown slow;
+  double worst = kAllowed;
+  const auto cell = static_cast<double>(place.cell());
+  const auto end = static_cast<double>(place.end());
+  for (double period = -cell * static_cast<double>(SmoothPlace::kReach); period < end;) {
+    const PlaceState where = place.state(period, path.period_s());
+    const StageState state = stages.state(where.place);
+    const Need need = need_of(limits, rates(state, where));
+    if (need.factor > kAllowed) {
+      slow.needed = true;
+      needs.add(period - 1.5 * cell, period + 1.5 * cell, need.factor * kMore);
+      if (need.factor > worst) {
+        worst = need.factor;
+        slow.point = where.place.index;
+        slow.axis = need.axis;
+      }
+    }
+    // An eighth of a cell, or half a point where that is less.
+    const double half_point = 0.5 / std::max(where.speed * path.period_s(), 1e-12);
+    period += std::clamp(half_point, cell / 64, cell / 8);
+  }
+  if (slow.needed) {
+    const std::vector<double>& factors = needs.spread(2 * cell);
+    for (std::size_t r = 0; r < factors.size(); ++r) {
+      path.runs()[r].stretch *= factors[r];
+    }
+  }
+  return slow;
+}
+
+std::optional<std::size_t> cap_by_stages(const SevenLimits& limits, const StageSpline& stages, const PathRuns& path,
+                                         PathRun& run) {
+  constexpr int kMostTries = 60;
+  constexpr std::size_t kLooks = 24;
+  const double by = static_cast<double>(run.count) / std::max(run.length_mm, 1e-12);  // points a mm
+  const std::size_t looks = run.count > 1 ? kLooks * run.count : 1;
+  constexpr double kUnmoved = 1e-15;
+  run.caps = {1e12, 1e12, 1e12};
+  for (std::size_t k = 0; k <= looks; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(looks);
+    const StageState at = stages.state(PathRuns::place(run, share * run.length_mm));
+    for (std::size_t axis = 0; axis < kStageAxes; ++axis) {
+      const double slope = std::max(std::abs(at.first[axis]) * by, kUnmoved);
+      run.caps.speed = std::min(run.caps.speed, limits[axis].speed / slope);
+      run.caps.acceleration = std::min(run.caps.acceleration, limits[axis].acceleration / slope);
+      run.caps.jerk = std::min(run.caps.jerk, limits[axis].jerk / slope);
+    }
+  }
+  std::size_t worst = 0;
+  for (int attempt = 0; attempt < kMostTries; ++attempt) {
+    if (run.count == 1) {
+      return std::nullopt;  // straight in the stages' own coordinates: the caps are exact
+    }
+    const motion::Profile profile = path.profile(run);
+    double most = 1;
+    std::vector<double> times_s(profile.times_s.begin(), profile.times_s.end());  // where accelerations peak
+    for (std::size_t k = 1; k < looks; ++k) {
+      times_s.push_back(profile.access_time_s() * static_cast<double>(k) / static_cast<double>(looks));
+    }
+    for (const double time_s : times_s) {
+      const motion::State at = profile.at(time_s);
+      const PlaceState where{PathRuns::place(run, at.position_mm), at.velocity_mm_s * by, at.acceleration_mm_s2 * by,
+                             at.jerk_mm_s3 * by};
+      const Need need = need_of(limits, rates(stages.state(where.place), where));
+      if (need.factor > most) {
+        most = need.factor;
+        worst = need.axis;
+      }
+    }
+    if (most <= 1) {
+      return std::nullopt;
+    }
+    run.stretch *= most * 1.003;
+  }
+  return worst;
+}
+
+}  // namespace gravure::texture

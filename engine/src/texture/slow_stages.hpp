@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+
+#include "gravure/texture/path_timing.hpp"
+#include "path_runs.hpp"
+#include "path_spline.hpp"
+#include "smooth_place.hpp"
+
+namespace gravure::texture {
+
+/// Caps every run by what U and V can, less what the stages' own motion takes of it: [M p]''' - X''' has M''' p,
+/// 3 M'' p', 3 M' p'' and X''' beside M p''', and so on for acceleration and speed; each is bounded from above. Without
+/// `place` the stages are taken to stand still.
+void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, const SmoothPlace* place,
+                  PathRuns& path);
+
+/// Whether a stage is beyond a limit somewhere; where it is worst.
+struct SlowDown {
+  bool needed = false;
+  std::size_t point = 0;
+  std::size_t axis = 0;
+};
+/// Looks at the stages all along and stretches the runs round every place where a limit is broken, less and less with
+/// the distance from it.
+SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, PathRuns& path);
+
+/// Caps a run of the stages alone. The axis that cannot be kept within its limits, if there is one.
+std::optional<std::size_t> cap_by_stages(const SevenLimits& limits, const StageSpline& stages, const PathRuns& path,
+                                         PathRun& run);
+
+}  // namespace gravure::texture

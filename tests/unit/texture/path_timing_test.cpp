@@ -1,0 +1,203 @@
+#include "gravure/texture/path_timing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "gravure/core/path_expand.hpp"
+#include "gravure/kinematics/machines.hpp"
+#include "gravure/texture/split.hpp"
+#include "published_surface.hpp"
+
+namespace gravure::texture {
+namespace {
+
+/// A Hilbert curve on the stated surface, its points as far apart as the published ones.
+struct Fixture {
+  explicit Fixture(int order, double sigma_mm, Stops stops = Stops::points) {
+    const int side = 1 << order;
+    const TexturePath path{hilbert_curve(order, 40.0 / 255 * (side - 1)).value(), 40.0 / 255};
+    split = split_path(*test::published_surface(), path, {.sigma_mm = sigma_mm, .cut = 4}).value();
+    machine = kinematics::xyzac_machine(kinematics::XyzacSigns::texturing, Vector3(0, -12, 0), {});
+    seven = seven_axes(machine, split.targets, split.stages).value();
+    five = seven_axes(machine, split.targets, split.targets).value();
+    pulse_mm = pulse_lengths_mm(path, split.targets);
+    request.targets = split.targets;
+    request.axes = seven;
+    request.pulse_mm = pulse_mm;
+    request.table = rotary_table(machine).value();
+    request.limits = published_limits();
+    request.stops = stops;
+    request.sigma_points = sigma_mm / path.step_mm;
+  }
+  Split split;
+  kinematics::Machine machine;
+  std::vector<SevenAxes> seven;
+  std::vector<SevenAxes> five;
+  std::vector<double> pulse_mm;
+  PathTimingRequest request;
+};
+
+std::vector<PathInstant> all_instants(const PathMotion& motion) {
+  std::vector<PathInstant> all(static_cast<std::size_t>(motion.instants()));
+  EXPECT_TRUE(motion.read(0, all));
+  return all;
+}
+
+std::string words(const std::vector<LimitUse>& uses) {
+  std::string text;
+  for (const LimitUse& use : uses) {
+    text += std::string(kPathAxes[use.axis]) + " " + std::string(limit_name(use.kind)) + " " +
+            std::to_string(use.share()) + "\n";
+  }
+  return text;
+}
+
+class ProveSevenAxes : public testing::TestWithParam<std::pair<double, Stops>> {};
+
+TEST_P(ProveSevenAxes, LeavesNoLimitBroken) {
+  const Fixture f(4, GetParam().first, GetParam().second);
+  const auto proven = prove_seven_axes(f.request, {});
+  ASSERT_TRUE(proven) << proven.error().message;
+  EXPECT_TRUE(broken(proven.value().uses).empty()) << words(broken(proven.value().uses));
+  ASSERT_EQ(proven.value().uses.size(), 21U);
+}
+INSTANTIATE_TEST_SUITE_P(Sigmas, ProveSevenAxes,
+                         testing::Values(std::pair(6.0, Stops::points), std::pair(6.0, Stops::corners),
+                                         std::pair(1.0, Stops::points), std::pair(0.3, Stops::corners)));
+
+/// What prove_limits() says of the cubics is what ten looks a period find, and no less.
+TEST(ProveLimits, FindsWhatTenTimesTheDensityFinds) {
+  const Fixture f(3, 3);
+  const auto proven = prove_seven_axes(f.request, {});
+  ASSERT_TRUE(proven);
+  const std::vector<PathInstant> at = all_instants(*proven.value().path.motion);
+  const double h = f.request.servo_s;
+  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+    double most[3] = {};
+    for (std::size_t k = 0; k + 1 < at.size(); ++k) {
+      const std::array<double, 4> x{at[k > 0 ? k - 1 : 0].axes[axis], at[k].axes[axis], at[k + 1].axes[axis],
+                                    at[std::min(k + 2, at.size() - 1)].axes[axis]};
+      for (int look = 0; look <= 10; ++look) {
+        const CubicMotion m = cubic_motion(x, look / 10.0);
+        most[0] = std::max(most[0], std::abs(m.speed) / h);
+        most[1] = std::max(most[1], std::abs(m.acceleration) / (h * h));
+        most[2] = std::max(most[2], std::abs(m.jerk) / (h * h * h));
+      }
+    }
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+      const LimitUse& use = proven.value().uses[axis * 3 + kind];
+      EXPECT_LE(most[kind], use.most * (1 + 1e-12)) << kPathAxes[axis];
+      EXPECT_GE(most[kind], use.most * 0.9999) << kPathAxes[axis];
+      EXPECT_LE(most[kind], use.allowed * (1 + 1e-6)) << kPathAxes[axis];
+    }
+  }
+}
+
+/// Forward kinematics of every instant, by the machine itself: the light is on the path and stands on every point.
+TEST(SevenAxisMotion, PutsTheLightOnThePath) {
+  const Fixture f(4, 4);
+  const auto timed = time_seven_axes(f.request, {});
+  ASSERT_TRUE(timed) << timed.error().message;
+  const std::vector<PathInstant> at = all_instants(*timed.value().motion);
+  std::size_t reached = 0;
+  for (const PathInstant& now : at) {
+    const auto field =
+        kinematics::field_of(f.machine, std::span(now.axes).first(5), f.split.targets[reached].position_mm);
+    ASSERT_TRUE(field);
+    const bool on_point = std::hypot(field.value().u_mm - now.axes[5], field.value().v_mm - now.axes[6]) < 1e-9;
+    if (on_point && reached + 1 < f.split.targets.size()) {
+      EXPECT_NEAR(now.along_mm, f.pulse_mm[reached], 1e-9);
+      ++reached;
+    }
+  }
+  EXPECT_EQ(reached + 1, f.split.targets.size());
+  EXPECT_EQ(at.back().along_mm, f.pulse_mm.back());
+  EXPECT_NEAR(static_cast<double>(at.size() - 1) * f.request.servo_s, timed.value().time_s, 1e-9);
+}
+
+TEST(SevenAxisMotion, RestsAtBothEndsAndNeverGoesBack) {
+  const Fixture f(4, 4);
+  const auto timed = time_seven_axes(f.request, {});
+  ASSERT_TRUE(timed);
+  const std::vector<PathInstant> at = all_instants(*timed.value().motion);
+  for (std::size_t axis = 0; axis < 5; ++axis) {
+    EXPECT_NEAR(at.front().axes[axis], at[1].axes[axis], 1e-9);
+    EXPECT_NEAR(at.back().axes[axis], at[at.size() - 2].axes[axis], 1e-9);
+  }
+  EXPECT_EQ(at.front().along_mm, 0);
+  for (std::size_t k = 1; k < at.size(); ++k) {
+    ASSERT_GE(at[k].along_mm, at[k - 1].along_mm);
+  }
+}
+
+TEST(SevenAxisMotion, ReadsTheSameFromAnyInstant) {
+  const Fixture f(3, 3);
+  const auto timed = time_seven_axes(f.request, {});
+  ASSERT_TRUE(timed);
+  const PathMotion& motion = *timed.value().motion;
+  const std::vector<PathInstant> at = all_instants(motion);
+  for (std::int64_t first = 0; first < motion.instants(); first += 777) {
+    PathInstant one;
+    ASSERT_TRUE(motion.read(first, std::span(&one, 1)));
+    EXPECT_EQ(one.axes, at[static_cast<std::size_t>(first)].axes);
+    EXPECT_EQ(one.along_mm, at[static_cast<std::size_t>(first)].along_mm);
+  }
+  PathInstant beyond;
+  EXPECT_FALSE(motion.read(motion.instants(), std::span(&beyond, 1)));
+}
+
+/// Never faster than the stop model that knows no stages, and hardly slower where they are no bottle-neck.
+TEST(TimeSevenAxes, StaysNearTheStopModel) {
+  for (const Stops stops : {Stops::points, Stops::corners}) {
+    const Fixture f(5, 8, stops);
+    const auto timed = time_seven_axes(f.request, {});
+    ASSERT_TRUE(timed);
+    const std::vector<std::size_t> rests = resting_points(f.split.targets, stops);
+    const double model_s = stop_time_s(f.seven, rests, f.request.limits, 5, 7);
+    const double lead_s = 0.4;
+    EXPECT_GT(timed.value().time_s, model_s);
+    EXPECT_LT(timed.value().time_s, 1.02 * model_s + lead_s);
+  }
+}
+
+TEST(TimeFiveAxes, IsTheStopModelAndKeepsLimits) {
+  Fixture f(4, 4);
+  f.request.axes = f.five;
+  const auto timed = time_five_axes(f.request, {});
+  ASSERT_TRUE(timed) << timed.error().message;
+  const double model_s = stop_time_s(f.five, resting_points(f.split.targets, Stops::points), f.request.limits, 0, 5);
+  EXPECT_NEAR(timed.value().time_s, model_s, 0.001 * model_s);
+  const auto uses = prove_limits(*timed.value().motion, f.request.limits, f.request.servo_s, {});
+  ASSERT_TRUE(uses);
+  for (const LimitUse& use : uses.value()) {
+    EXPECT_LE(use.share(), 1.001) << kPathAxes[use.axis] << " " << limit_name(use.kind);
+  }
+  f.request.stops = Stops::corners;
+  const auto corners = time_five_axes(f.request, {});
+  ASSERT_TRUE(corners);
+  EXPECT_LT(corners.value().time_s, timed.value().time_s);
+}
+
+TEST(TimeSevenAxes, RefusesWhatIsNoRequest) {
+  Fixture f(2, 3);
+  PathTimingRequest wrong = f.request;
+  wrong.servo_s = 0;
+  EXPECT_EQ(time_seven_axes(wrong, {}).error().code, ErrorCode::out_of_range);
+  wrong = f.request;
+  wrong.limits[6].jerk = -1;
+  EXPECT_NE(time_seven_axes(wrong, {}).error().message.find("axis V"), std::string::npos);
+  wrong = f.request;
+  wrong.axes = wrong.axes.first(3);
+  EXPECT_EQ(time_five_axes(wrong, {}).error().code, ErrorCode::out_of_range);
+  CancelToken cancel;
+  cancel.cancel();
+  EXPECT_EQ(time_seven_axes(f.request, cancel).error().code, ErrorCode::cancelled);
+  kinematics::Machine tilted = f.machine;
+  tilted.head.lens = kinematics::Lens::f_theta;
+  EXPECT_EQ(rotary_table(tilted).error().code, ErrorCode::bad_argument);
+}
+
+}  // namespace
+}  // namespace gravure::texture
