@@ -3,30 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
-#include "gravure/core/csv_rows.hpp"
-#include "gravure/core/file_output.hpp"
-#include "gravure/texture/planar_path.hpp"
+#include "gravure/kinematics/machines.hpp"
+#include "gravure/texture/clamping.hpp"
 
 namespace gravure::cli {
 namespace {
 
-using texture::Vector2;
-
-constexpr std::size_t kMostPathBytes = std::size_t{1} << 30U;
 constexpr std::int64_t kMostHilbertOrder = 10;
-constexpr std::size_t kMostPoints = 1'500'000;  // a point takes some 150 bytes at the peak
-
-Result<std::vector<Vector2>> read_path(const std::string& file) {
-  GRAVURE_TRY(const std::string text, read_file(file, kMostPathBytes));
-  std::vector<Vector2> path;
-  const Result<void> read = read_csv_rows(text, {"path", "x and y in mm, two numbers and no more", 2, "x_mm,y_mm"},
-                                          [&path](std::span<const double> row) { path.emplace_back(row[0], row[1]); });
-  if (!read) {
-    return Error{read.error().code, file + ": " + read.error().message};
-  }
-  return path;
-}
 
 }  // namespace
 
@@ -35,42 +20,36 @@ double figure(double value) {
 }
 
 void add_texture_options(CLI::App& verb, TextureOptions& options) {
-  verb.add_option("--surface", options.surface, "z in mm by x and y in mm: + - * / ^, sin, cos, exp, sqrt, pi ...")
-      ->required();
+  verb.add_option("--surface", options.surface, "z in mm by x and y in mm: + - * / ^, sin, cos, exp, sqrt, pi ...");
+  verb.add_option("--height-field", options.height_field, "Surface from a picture of 16 bits or floats");
+  add_length(verb, "--pixel-um", options.pixel_um, 1e9, "Side of its pixels along x");
+  add_length(verb, "--pixel-y-um", options.pixel_y_um, 1e9, "The same along y (default: as along x)");
+  verb.add_option("--height-mm", options.height_mm, "z of its sample 0 and of its largest one, or of 1.0")->expected(2);
+  verb.add_option("--mesh", options.mesh, "Surface from the triangles of an STL or PLY file, seen along z");
+  add_length(verb, "--max-slope-deg", options.max_slope_deg, 90, "Steepest slope of the surface that is taken")
+      ->capture_default_str();
   verb.add_option("--hilbert-order", options.hilbert_order, "Hilbert curve of 4^N points as path")
       ->check(integer_from(1, kMostHilbertOrder));
   add_length(verb, "--size-mm", options.size_mm, 1e6, "Side of the square of that curve")->capture_default_str();
   verb.add_option("--path", options.path, "Path from a file: CSV with x_mm, y_mm, a corner a line");
-  add_length(verb, "--step-um", options.step_um, 1e9, "Distance of the points along --path");
-}
-
-Result<texture::TexturePath> path_of(const TextureOptions& options) {
-  if (options.path.empty() == (options.hilbert_order == 0)) {
-    return Error{ErrorCode::bad_argument, "give the path either as --hilbert-order N or as --path FILE.csv"};
-  }
-  texture::TexturePath path;
-  if (options.hilbert_order != 0) {
-    if (options.step_um) {
-      return Error{ErrorCode::bad_argument, "--step-um: the points of a Hilbert curve are its own; leave it out"};
-    }
-    GRAVURE_TRY(path.points_mm, texture::hilbert_curve(options.hilbert_order, options.size_mm));
-    path.step_mm = (path.points_mm[1] - path.points_mm[0]).norm();
-    return path;
-  }
-  if (!options.step_um) {
-    return Error{ErrorCode::bad_argument, "--step-um is missing: how far apart the points of the path are to be taken"};
-  }
-  path.step_mm = *options.step_um / kUmPerMm;
-  GRAVURE_TRY(const std::vector<Vector2> corners, read_path(options.path));
-  auto points = texture::resample(corners, path.step_mm, kMostPoints);
-  if (!points) {
-    return Error{points.error().code, options.path + ": " + points.error().message};
-  }
-  path.points_mm = std::move(points).value();
-  return path;
+  verb.add_option("--bitmap", options.bitmap, "Picture as lines to and fro, a pulse above every pixel that fires");
+  add_length(verb, "--pitch-um", options.pitch_um, 1e9, "Its pixels along the lines, in the plane");
+  add_length(verb, "--line-pitch-um", options.line_pitch_um, 1e9, "Its lines (default: as the pixels)");
+  verb.add_option("--run-out-um", options.run_out_um, "Dark way before and behind each line, at least")
+      ->check(number_from(0, 1e9))
+      ->capture_default_str();
+  verb.add_option("--fires", options.fires, "Which pixels of it fire")->check(CLI::IsMember({"white", "black"}));
+  verb.add_option("--threshold", options.threshold, "Grey picture: a sample of so much or more is white")
+      ->check(integer_from(0, 65535));
+  add_length(verb, "--step-um", options.step_um, 1e9,
+             "Distance of the points along --path; at most that along --bitmap (default 100)");
 }
 
 void add_split_options(CLI::App& verb, SplitOptions& options, const std::string& without_sigma) {
+  verb.add_option("--split", options.method, "How the stages' path is made")
+      ->check(CLI::IsMember({"gaussian", "savitzky-golay", "fft", "adaptive", "optimal"}))
+      ->capture_default_str();
+  verb.add_flag("--focus-axis", options.focus_axis, "An axis W takes up the focus offset: no limit for it");
   add_length(verb, "--sigma-um", options.sigma_um, 1e9,
              "Sigma of the Gaussian along the path; left out: " + without_sigma);
   add_length(verb, "--cut", options.cut, 38, "Where the Gaussian ends, in sigma")->capture_default_str();
@@ -81,13 +60,47 @@ void add_split_options(CLI::App& verb, SplitOptions& options, const std::string&
 }
 
 texture::DeviationLimits limits_of(const SplitOptions& options) {
-  return {options.fod_um / kUmPerMm, options.bia_deg / kDegreesPerRad, options.displacement_mm};
+  return {options.focus_axis ? std::numeric_limits<double>::infinity() : options.fod_um / kUmPerMm,
+          options.bia_deg / kDegreesPerRad, options.displacement_mm};
+}
+
+std::unique_ptr<texture::Splitter> splitter_of(const SplitOptions& options) {
+  using texture::SplitMethod;
+  auto method = SplitMethod::gaussian;
+  for (const SplitMethod each :
+       {SplitMethod::savitzky_golay, SplitMethod::fft, SplitMethod::adaptive, SplitMethod::optimal}) {
+    method = split_method_name(each) == options.method ? each : method;
+  }
+  return texture::make_splitter(method, {.sigma_mm = 0, .cut = options.cut});
+}
+
+void add_axes_options(CLI::App& verb, AxesOptions& options) {
+  verb.add_option("--branch", options.branch, "Sign of A")
+      ->check(CLI::IsMember({"positive", "negative"}))
+      ->capture_default_str();
+  verb.add_option("--signs", options.signs, "Senses of the axes: of [A], or of [C2]'s post-processor")
+      ->check(CLI::IsMember({"texturing", "post-processor"}))
+      ->capture_default_str();
+  verb.add_option("--origin-mm", options.origin_mm, "Where A and C meet, in the workpiece: x y z")->expected(3);
+  verb.add_option("--tilt-deg", options.tilt_deg, "Clamping: turned about x, then about y, by so much")->expected(2);
+}
+
+Result<std::vector<texture::SevenAxes>> axes_of(const AxesOptions& options, const texture::Split& split) {
+  const auto signs =
+      options.signs == "texturing" ? kinematics::XyzacSigns::texturing : kinematics::XyzacSigns::post_processor;
+  const kinematics::Vector3 origin_mm(options.origin_mm[0], options.origin_mm[1], options.origin_mm[2]);
+  const auto machine = kinematics::xyzac_machine(signs, origin_mm, {});
+  const auto branch = options.branch == "positive" ? kinematics::Branch::positive : kinematics::Branch::negative;
+  const texture::Clamping clamping{options.tilt_deg[0] / kDegreesPerRad, options.tilt_deg[1] / kDegreesPerRad};
+  const texture::Split lying = texture::clamped(split, clamping);
+  return texture::seven_axes(machine, lying.targets, lying.stages, branch);
 }
 
 Result<void> write_points(const std::string& file, const texture::Split& split,
-                          std::span<const texture::SevenAxes> axes) {
+                          std::span<const texture::SevenAxes> axes, bool focus_axis) {
   GRAVURE_TRY(TextOutput output, TextOutput::create(file));
-  output.text() += "i,x,y,z,xp,yp,zp,X,Y,Z,A,C,U,V,fod_um,bia_deg\n";
+  output.text() += "i,x,y,z,xp,yp,zp,X,Y,Z,A,C,U,V,fod_um,bia_deg";
+  output.text() += focus_axis ? ",W\n" : "\n";
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto& p = split.targets[i].position_mm;
     const auto& q = split.stages[i].position_mm;
@@ -95,9 +108,10 @@ Result<void> write_points(const std::string& file, const texture::Split& split,
     const texture::Deviation off = texture::deviation(split.targets[i], split.stages[i]);
     output.text() += fmt::format(
         "{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.12f},{:.12f},{:.9f},"
-        "{:.9f},{:.6f},{:.9f}\n",
+        "{:.9f},{:.6f},{:.9f}",
         i, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), at.x_mm, at.y_mm, at.z_mm, at.a_rad, at.c_rad, at.u_mm, at.v_mm,
         off.focus_mm * kUmPerMm, off.incidence_rad * kDegreesPerRad);
+    output.text() += focus_axis ? fmt::format(",{:.9f}\n", at.w_mm) : "\n";
     if (!output.flush(false) || cancel_token().cancelled()) {
       break;
     }
@@ -126,9 +140,12 @@ std::string split_text(const texture::TexturePath& path, const texture::Split& s
   const double length_mm = static_cast<double>(path.points_mm.size() - 1) * path.step_mm;
   std::string text = fmt::format("path          {} points, {:.6g} um apart, {:.6g} m in the plane\n",
                                  split.targets.size(), path.step_mm * kUmPerMm, length_mm / 1000);
-  text += fmt::format("sigma         {:.3f} um of arc length{}\n", split.sigma_mm * kUmPerMm, how_sigma);
-  text += fmt::format("focus offset  {:.3f} um at most, {:.3f} um rms (allowed {:.6g})\n", most.max_focus_mm * kUmPerMm,
-                      most.rms_focus_mm * kUmPerMm, options.fod_um);
+  if (options.method != "optimal") {
+    text += fmt::format("sigma         {:.3f} um of arc length{}\n", split.sigma_mm * kUmPerMm, how_sigma);
+  }
+  text += fmt::format("focus offset  {:.3f} um at most, {:.3f} um rms ({})\n", most.max_focus_mm * kUmPerMm,
+                      most.rms_focus_mm * kUmPerMm,
+                      options.focus_axis ? "taken up by W" : fmt::format("allowed {:.6g}", options.fod_um));
   text += fmt::format("incidence     {:.5f} deg at most (allowed {:.6g})\n", most.max_incidence_rad * kDegreesPerRad,
                       options.bia_deg);
   text += fmt::format("galvo         {:.6f} mm at most (allowed {:.6g})\n", most.max_displacement_mm,

@@ -1,0 +1,198 @@
+// Surfaces and paths of the verbs of texture, out of files and expressions.
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "gravure/core/csv_rows.hpp"
+#include "gravure/core/file_output.hpp"
+#include "gravure/formats/image_files.hpp"
+#include "gravure/formats/points.hpp"
+#include "gravure/pipeline/layer_reader.hpp"
+#include "gravure/texture/height_field.hpp"
+#include "gravure/texture/mesh_surface.hpp"
+#include "gravure/texture/planar_path.hpp"
+#include "texture_options.hpp"
+
+namespace gravure::cli {
+namespace {
+
+using texture::Vector2;
+
+constexpr std::size_t kMostPathBytes = std::size_t{1} << 30U;
+constexpr std::size_t kMostPoints = 1'500'000;  // a point takes some 150 bytes at the peak
+constexpr double kPictureStep_um = 100;
+
+Error named(const std::string& file, const Error& error) {
+  return {error.code, file + ": " + error.message};
+}
+
+Result<std::vector<Vector2>> read_path(const std::string& file) {
+  GRAVURE_TRY(const std::string text, read_file(file, kMostPathBytes));
+  std::vector<Vector2> path;
+  const Result<void> read = read_csv_rows(text, {"path", "x and y in mm, two numbers and no more", 2, "x_mm,y_mm"},
+                                          [&path](std::span<const double> row) { path.emplace_back(row[0], row[1]); });
+  if (!read) {
+    return named(file, read.error());
+  }
+  return path;
+}
+
+Result<std::unique_ptr<texture::Surface>> height_field_of(const TextureOptions& options) {
+  if (!options.pixel_um) {
+    return Error{ErrorCode::bad_argument, "--pixel-um is missing: the side of the pixels of --height-field"};
+  }
+  const ImageFiles files;
+  GRAVURE_TRY(const std::unique_ptr<ImageSource> picture, files.open(options.height_field, 0));
+  texture::HeightScale scale;
+  scale.pitch_x_mm = *options.pixel_um / kUmPerMm;
+  scale.pitch_y_mm = options.pixel_y_um.value_or(*options.pixel_um) / kUmPerMm;
+  if (options.height_mm.size() == 2) {
+    scale.low_mm = options.height_mm[0];
+    scale.high_mm = options.height_mm[1];
+  } else if (picture->info().samples == SampleType::u16) {
+    return Error{ErrorCode::bad_argument, "--height-mm is missing: z of sample 0 and of sample 65535"};
+  }
+  GRAVURE_TRY(texture::HeightGrid grid, texture::read_height_grid(*picture, scale));
+  auto surface = texture::height_field_surface(std::move(grid));
+  if (!surface) {
+    return named(options.height_field, surface.error());
+  }
+  return surface;
+}
+
+Result<std::unique_ptr<texture::Surface>> mesh_of(const TextureOptions& options) {
+  GRAVURE_TRY(const TriangleMesh mesh, read_triangle_mesh(options.mesh));
+  std::vector<texture::Vector3> vertices;
+  vertices.reserve(mesh.vertices_mm.size());
+  for (const Point3& each : mesh.vertices_mm) {
+    vertices.emplace_back(each[0], each[1], each[2]);
+  }
+  auto surface = texture::mesh_surface(vertices, mesh.triangles);
+  if (!surface) {
+    return named(options.mesh, surface.error());
+  }
+  return surface;
+}
+
+/// The picture as a layer of a job on a cylinder.
+Result<LayerStack> picture_stack(const TextureOptions& options, const ImageOpener& files) {
+  GRAVURE_TRY(const std::unique_ptr<ImageSource> picture, files.open(options.bitmap, 0));
+  const ImageInfo& info = picture->info();
+  if (options.fires.empty()) {
+    return Error{ErrorCode::bad_argument, "--fires is missing: which pixels of --bitmap fire, white or black"};
+  }
+  if ((info.samples != SampleType::bit) != options.threshold.has_value()) {
+    return Error{ErrorCode::bad_argument,
+                 options.bitmap + (options.threshold ? ": is bilevel: leave --threshold out"
+                                                     : ": is grey: give --threshold, the least sample that is white")};
+  }
+  LayerStack stack;
+  stack.layers.push_back({options.bitmap, 0, 0});
+  stack.lines = info.height;
+  stack.pixels = info.width;
+  stack.samples = info.samples;
+  stack.random_access = info.random_access;
+  stack.fires = options.fires == "white" ? Fires::white : Fires::black;
+  stack.threshold = options.threshold;
+  return stack;
+}
+
+texture::PictureGrid grid_of(const TextureOptions& options, const LayerStack& stack) {
+  const double pitch_um = options.pitch_um.value_or(0);
+  return {.columns = stack.pixels,
+          .rows = stack.lines,
+          .pixel_mm = pitch_um / kUmPerMm,
+          .line_mm = options.line_pitch_um.value_or(pitch_um) / kUmPerMm,
+          .run_out_mm = options.run_out_um / kUmPerMm,
+          .step_mm = options.step_um.value_or(kPictureStep_um) / kUmPerMm};
+}
+
+Result<texture::TexturePath> file_path_of(const TextureOptions& options) {
+  if (!options.step_um) {
+    return Error{ErrorCode::bad_argument, "--step-um is missing: how far apart the points of the path are to be taken"};
+  }
+  texture::TexturePath path;
+  path.step_mm = *options.step_um / kUmPerMm;
+  GRAVURE_TRY(const std::vector<Vector2> corners, read_path(options.path));
+  auto points = texture::resample(corners, path.step_mm, kMostPoints);
+  if (!points) {
+    return named(options.path, points.error());
+  }
+  path.points_mm = std::move(points).value();
+  return path;
+}
+
+}  // namespace
+
+std::vector<std::string> inputs_of(const TextureOptions& options) {
+  std::vector<std::string> inputs;
+  for (const std::string* each : {&options.path, &options.height_field, &options.mesh, &options.bitmap}) {
+    if (!each->empty()) {
+      inputs.push_back(*each);
+    }
+  }
+  return inputs;
+}
+
+const std::string& surface_name(const TextureOptions& options) {
+  return !options.surface.empty() ? options.surface : !options.mesh.empty() ? options.mesh : options.height_field;
+}
+
+Result<std::unique_ptr<texture::Surface>> surface_of(const TextureOptions& options) {
+  const int given = static_cast<int>(!options.surface.empty()) + static_cast<int>(!options.height_field.empty()) +
+                    static_cast<int>(!options.mesh.empty());
+  if (given != 1) {
+    return Error{ErrorCode::bad_argument,
+                 "give the surface as one of --surface EXPRESSION, --height-field FILE and --mesh FILE"};
+  }
+  auto surface = !options.surface.empty() ? texture::expression_surface(options.surface)
+                 : !options.mesh.empty()  ? mesh_of(options)
+                                          : height_field_of(options);
+  if (!surface) {
+    return surface.error();
+  }
+  return texture::limit_slope(std::move(surface).value(), options.max_slope_deg / kDegreesPerRad);
+}
+
+Result<texture::PictureGrid> picture_grid_of(const TextureOptions& options) {
+  if (!options.pitch_um) {
+    return Error{ErrorCode::bad_argument, "--pitch-um is missing: how far apart the pixels of --bitmap are"};
+  }
+  const ImageFiles files;
+  GRAVURE_TRY(const LayerStack stack, picture_stack(options, files));
+  return grid_of(options, stack);
+}
+
+Result<PathPulses> picture_pulses_of(const TextureOptions& options) {
+  const ImageFiles files;
+  GRAVURE_TRY(const LayerStack stack, picture_stack(options, files));
+  LayerReader lines(stack, files, 0);
+  return texture::picture_pulses(grid_of(options, stack), lines, cancel_token());
+}
+
+Result<texture::TexturePath> path_of(const TextureOptions& options) {
+  const int given = static_cast<int>(options.hilbert_order != 0) + static_cast<int>(!options.path.empty()) +
+                    static_cast<int>(!options.bitmap.empty());
+  if (given != 1) {
+    return Error{ErrorCode::bad_argument,
+                 "give the path as one of --hilbert-order N, --path FILE.csv and --bitmap FILE"};
+  }
+  if (!options.bitmap.empty()) {
+    GRAVURE_TRY(const texture::PictureGrid grid, picture_grid_of(options));
+    return texture::picture_path(grid, kMostPoints);
+  }
+  if (!options.path.empty()) {
+    return file_path_of(options);
+  }
+  if (options.step_um) {
+    return Error{ErrorCode::bad_argument, "--step-um: the points of a Hilbert curve are its own; leave it out"};
+  }
+  texture::TexturePath path;
+  GRAVURE_TRY(path.points_mm, texture::hilbert_curve(options.hilbert_order, options.size_mm));
+  path.step_mm = (path.points_mm[1] - path.points_mm[0]).norm();
+  return path;
+}
+
+}  // namespace gravure::cli
