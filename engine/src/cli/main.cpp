@@ -151,6 +151,7 @@ int run(int argc, char** argv) {
   gravure::cli::add_devices(app, command);
   gravure::cli::add_motion_command(app, command);
   gravure::cli::add_texture(app, command);
+  gravure::cli::add_chart_command(app, command);
   gravure::cli::add_completion(app, command);
   gravure::cli::add_man(app, command);
   gravure::cli::add_log_level(app);  // after all verbs: each gets it

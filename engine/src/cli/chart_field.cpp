@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "charts.hpp"
+
+namespace gravure::cli {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kUsed = 0.9;         // of the field: its rim is left to the turns
+constexpr double kSteepest_deg = 60;  // incidence up to which marks stay readable
+constexpr std::int64_t kArm = 7;      // pixels of a cross, to either side of its middle
+
+/// A row of marks: one job, its lines `offset_deg` round the circumference.
+struct MarkRow {
+  std::string name;
+  double offset_deg = 0;
+  double v_mm = 0;
+  std::int64_t line = 0;  ///< of the middles of the marks
+};
+
+MarkRow mark_row(const ChartBase& base, const ChartOptions& options, std::int64_t row) {
+  const double radius_mm = to_double(base.plan.rotary.circumference_um) / (2000 * kPi);
+  const double reach_mm = std::min(kUsed * base.field_mm / 2, radius_mm * std::sin(kSteepest_deg * kPi / 180));
+  const double share = 2 * static_cast<double>(row) / static_cast<double>(options.rows - 1) - 1;
+  MarkRow made;
+  // Whole millionths of a degree, so that the job says exactly what the table does.
+  made.offset_deg = std::round(std::asin(share * reach_mm / radius_mm) * 180 / kPi * 1e6) / 1e6 + 0.0;
+  made.v_mm = radius_mm * std::sin(made.offset_deg * kPi / 180);
+  const std::int64_t middle = (options.rows - 1) / 2;
+  made.name = row == middle ? "job" : fmt::format("job_{}", row);
+  made.line = (2 * row + 1) * base.plan.rotary.lines_per_revolution / (2 * options.rows);
+  return made;
+}
+
+}  // namespace
+
+Result<Chart> field_chart(const ChartBase& base, const ChartOptions& options) {
+  if (base.plan.mode == Mode::flat) {
+    return Error{
+        ErrorCode::bad_argument,
+        "the field chart is for a workpiece that turns, whose lines can lie at any V: give --job a rotary one"};
+  }
+  const std::int64_t lines = base.plan.rotary.lines_per_revolution;
+  if (lines < options.rows * 4 * kArm) {
+    return Error{ErrorCode::out_of_range, fmt::format("--rows {}: {} lines have room for {} rows of marks at most",
+                                                      options.rows, lines, lines / (4 * kArm))};
+  }
+  const double pitch_mm = to_double(base.plan.line.pixel_pitch_um) / 1000;
+  const auto width = static_cast<std::int64_t>(kUsed * base.field_mm / pitch_mm) + 2 * kArm + 1;
+  if (static_cast<double>(width) * pitch_mm > base.field_mm || width < options.columns * 4 * kArm) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("--columns {}: a field of {} mm has room for {} marks at most", options.columns,
+                             base.field_mm, static_cast<std::int64_t>(kUsed * base.field_mm / pitch_mm) / (4 * kArm))};
+  }
+  Chart chart;
+  std::string csv = "u_order_mm,v_order_mm,x_mm,s_mm,cos_offset\n";
+  std::string runs;
+  for (std::int64_t row = 0; row < options.rows; ++row) {
+    const MarkRow made = mark_row(base, options, row);
+    ChartPicture picture(width, lines);
+    for (std::int64_t column = 0; column < options.columns; ++column) {
+      const std::int64_t x = kArm + column * (width - 2 * kArm - 1) / (options.columns - 1);
+      picture.fill({x - kArm, made.line, 2 * kArm + 1, 1});
+      picture.fill({x, made.line - kArm, 1, 2 * kArm + 1});
+      const double u_mm = (static_cast<double>(x) - static_cast<double>(width - 1) / 2) * pitch_mm;
+      csv += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", u_mm + 0.0, made.v_mm, u_mm + 0.0,
+                         static_cast<double>(made.line) * to_double(base.plan.rotary.line_pitch_um) / 1000,
+                         std::cos(made.offset_deg * kPi / 180));
+    }
+    const std::string layer = fmt::format("layers/row_{}.tif", row);
+    chart.pictures.push_back({layer, {picture}});
+    chart.jobs.push_back({made.name + ".toml",
+                          {fmt::format("field chart, row {} of {}", row, options.rows),
+                           "rotary",
+                           "files = [\"" + layer + "\"]\nfires = \"white\"\n",
+                           {{{"scanner", "bidirectional"}, "false"},
+                            {{"scanner", "field_mm"}, fmt::format("{}", base.field_mm)},
+                            {{"scanner", "offset_deg"}, fmt::format("{:.6f}", made.offset_deg)}}}});
+    runs += fmt::format("    gravure compile {0}.toml -o {0}.grv\n    gravure verify {0}.grv\n", made.name);
+  }
+  chart.texts.push_back({"orders.csv", csv});
+  chart.texts.push_back(
+      {"README.md",
+       fmt::format(
+           "# Field grid\n\n"
+           "{0} rows of {1} crosses over {2} mm of the field. Each row is a job of its own with another `offset_deg`, "
+           "because lines that lie beside the top of the workpiece are marked at another V. All rows go on the same "
+           "workpiece, which must not be unclamped in between, and each lies on other lines. The scanner's own "
+           "correction is off: take `field_grid` out of the job that this chart is made from.\n\n"
+           "Measure each cross on the workpiece, unrolled: x along it from the middle cross of the middle row "
+           "(job.toml), "
+           "s round it from line 0, and write, a mark a line in the order of `orders.csv`,\n\n"
+           "    u_order_mm, v_order_mm, u_landing_mm, v_landing_mm\n\n"
+           "with u_landing = x measured, v_landing = v_order + (s measured - s_mm) * cos_offset (`orders.csv` has "
+           "s_mm and cos_offset). Then\n\n"
+           "    gravure calibrate marks.csv -o field_grid.txt --field-mm {3}\n\n"
+           "and `field_grid = \"field_grid.txt\"` in [scanner] of your job undoes what was measured. Write this chart "
+           "again with it: what is left is the error of measuring.\n"
+           "\n## Run it\n\n{4}",
+           options.rows, options.columns, kUsed * base.field_mm, base.field_mm, runs)});
+  return chart;
+}
+
+}  // namespace gravure::cli
