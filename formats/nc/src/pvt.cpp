@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include "nc_words.hpp"
+
+namespace gravure::nc {
+namespace {
+
+constexpr double kMsPerS = 1000;
+
+/// "X1.000000000:0.000000000 Y..."
+void append_moves(const StagePlace& place, const StagePlace& speed, std::string& text) {
+  for (std::size_t i = 0; i < kStages; ++i) {
+    text += i == 0 ? "" : " ";
+    text += kStageLetters[i];
+    text += number(place[i]) + ":" + number(speed[i]);
+  }
+  text += '\n';
+}
+
+Result<void> take_moves(LineReader& lines, StagePlace& place, StagePlace& speed) {
+  for (std::size_t i = 0; i < kStages; ++i) {
+    const bool letter = (i == 0 || lines.take(" ")) && lines.take(std::string(1, kStageLetters[i]));
+    const auto where = letter ? lines.take_number() : std::nullopt;
+    const auto fast = where && lines.take(":") ? lines.take_number() : std::nullopt;
+    if (!fast) {
+      return lines.bad(std::string("must go on with ") + kStageLetters[i] + "place:speed");
+    }
+    place[i] = *where;
+    speed[i] = *fast;
+  }
+  return lines.at_end_of_line() ? Result<void>() : lines.bad("goes on behind its moves");
+}
+
+}  // namespace
+
+std::string pvt_start(const StagePlace& start, std::string_view title) {
+  std::string text =
+      "; " + comment(title) + "\n; places in mm and degrees, speeds a second\nOPEN PROG 1 CLEAR\nABS\nRAPID\n";
+  for (std::size_t i = 0; i < kStages; ++i) {
+    text += i == 0 ? "" : " ";
+    text += kStageLetters[i];
+    text += number(start[i]);
+  }
+  return text + "\n";
+}
+
+void append_pvt(const StageBlock& block, std::string& text) {
+  text += fmt::format("PVT{:.9f}\n", block.duration_s * kMsPerS);
+  append_moves(block.place, block.speed, text);
+}
+
+std::string pvt_end() {
+  return "CLOSE\n";
+}
+
+Result<StageProgram> parse_pvt(std::string_view text) {
+  if (text.size() > kMostProgramBytes) {
+    return Error{ErrorCode::bad_file, "longer than 1 GiB"};
+  }
+  LineReader lines(text);
+  StageProgram program;
+  for (const std::string_view head : {"OPEN PROG 1 CLEAR", "ABS", "RAPID"}) {
+    if (!lines.next() || !lines.take(head) || !lines.at_end_of_line()) {
+      return lines.bad("must be " + std::string(head));
+    }
+  }
+  lines.next();
+  for (std::size_t i = 0; i < kStages; ++i) {
+    const bool letter = (i == 0 || lines.take(" ")) && lines.take(std::string(1, kStageLetters[i]));
+    const auto where = letter ? lines.take_number() : std::nullopt;
+    if (!where) {
+      return lines.bad(std::string("must go on with ") + kStageLetters[i] + " and a number");
+    }
+    program.start[i] = *where;
+  }
+  while (lines.next()) {
+    if (lines.take("CLOSE")) {
+      return program;
+    }
+    StageBlock block;
+    const auto ms = lines.take("PVT") ? lines.take_number() : std::nullopt;
+    if (!ms || *ms <= 0 || !lines.at_end_of_line()) {
+      return lines.bad("must be PVT and a time above 0, or CLOSE");
+    }
+    block.duration_s = *ms / kMsPerS;
+    if (!lines.next()) {
+      return lines.bad("ends without moves");
+    }
+    GRAVURE_CHECK(take_moves(lines, block.place, block.speed));
+    program.blocks.push_back(block);
+  }
+  return lines.bad("ends without CLOSE");
+}
+
+StagePlace straight_between(const StagePlace& from, const StageBlock& block, double share) {
+  StagePlace place{};
+  for (std::size_t i = 0; i < kStages; ++i) {
+    place[i] = from[i] + share * (block.place[i] - from[i]);
+  }
+  return place;
+}
+
+StagePlace cubic_between(const StagePlace& from, const StagePlace& from_speed, const StageBlock& block, double share) {
+  StagePlace place{};
+  const double rest = 1 - share;
+  for (std::size_t i = 0; i < kStages; ++i) {
+    const double way = block.place[i] - from[i];
+    place[i] = from[i] + share * share * (3 - 2 * share) * way +
+               share * rest * block.duration_s * (rest * from_speed[i] - share * block.speed[i]);
+  }
+  return place;
+}
+
+}  // namespace gravure::nc
