@@ -76,6 +76,7 @@ inline ProgramHeader header_for(const LayerStack& stack, bool bidirectional, boo
   header.lines_along = stack.lines_along;
   for (std::size_t layer = 0; layer < stack.layers.size(); ++layer) {
     StoredLayer stored;
+    stored.level = stack.layers[layer].level;
     stored.starts_reverse = bidirectional && first_starts_reverse != ((layer % 2 != 0) && stack.lines % 2 != 0);
     header.layers.push_back(stored);
     header.layer_of_revolution.push_back(static_cast<std::uint32_t>(layer));

@@ -33,15 +33,19 @@ Json json_of(const ProgramHeader& header) {
                           {"stage", line.backwards ? "backwards" : "onwards"},
                           {"set_points", line.u_counts.size()}});
   }
-  return {{"format_version", header.format_version},
-          {"job_path", header.job_path},
-          {"fires", polarity_name(header.fires)},
-          {"lines_along", header.lines_along == LinesAlong::rows ? "rows" : "columns"},
-          {"plan", Json::parse(plan_to_json(header.plan))},
-          {"set_points", set_points},
-          {"sources", sources},
-          {"layers", layers},
-          {"layer_of_revolution", header.layer_of_revolution}};
+  Json described = {{"format_version", header.format_version},
+                    {"job_path", header.job_path},
+                    {"fires", polarity_name(header.fires)},
+                    {"lines_along", header.lines_along == LinesAlong::rows ? "rows" : "columns"},
+                    {"plan", Json::parse(plan_to_json(header.plan))},
+                    {"set_points", set_points},
+                    {"sources", sources},
+                    {"layers", layers},
+                    {"layer_of_revolution", header.layer_of_revolution}};
+  if (!header.bits_of_layer.empty()) {
+    described["bits_of_layer"] = header.bits_of_layer;
+  }
+  return described;
 }
 
 std::string text_of(const ProgramHeader& header, const std::string& path) {
@@ -53,7 +57,7 @@ std::string text_of(const ProgramHeader& header, const std::string& path) {
                         header.set_points.size());
   }
   text += fmt::format("images    {} fires; {} sources, {} stored layers, {} {}\n", polarity_name(header.fires),
-                      header.sources.size(), header.layers.size(), header.layer_of_revolution.size(),
+                      header.sources.size(), stored_layers(header), header.layer_of_revolution.size(),
                       turns_name(header.plan));
   if (header.plan.carriage) {
     return text;  // what a revolution shows is none of the layers

@@ -9,9 +9,11 @@
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/job_file.hpp"
 #include "gravure/pipeline/compile.hpp"
+#include "gravure/pipeline/merge.hpp"
 #include "gravure/sync/make_plan.hpp"
 #include "job_machine.hpp"
 #include "job_scanner.hpp"
+#include "program_parts.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -168,11 +170,11 @@ class Sources {
 };
 
 /// The images that are exposed, in each band and in each direction of the stage.
-Result<void> add_layers(const LoadedJob& loaded, const fs::path& job_folder, Compilation& made) {
+Result<void> add_layers(const LoadedJob& loaded, const fs::path& job_folder, const Shard& range, Compilation& made) {
   ProgramHeader& header = made.header;
   Sources sources(*loaded.images, job_folder, header.sources);
   StoredLayers stored(loaded.plan, loaded.job.image.order, loaded.images->layers);
-  for (std::int64_t r = 0; r < loaded.plan.job.revolutions; ++r) {
+  for (std::int64_t r = range.first; r < range.end; ++r) {
     header.layer_of_revolution.push_back(stored.number(r));
     if (header.layer_of_revolution.back() < header.layers.size()) {
       continue;
@@ -188,30 +190,31 @@ Result<void> add_layers(const LoadedJob& loaded, const fs::path& job_folder, Com
 }
 
 /// Helical: every revolution shows a part of every image, no two the same.
-Result<void> add_helical_layers(const ImageStack& images, const fs::path& job_folder, Compilation& made) {
+Result<void> add_helical_layers(const ImageStack& images, const fs::path& job_folder, const Shard& range,
+                                Compilation& made) {
   ProgramHeader& header = made.header;
   Sources sources(images, job_folder, header.sources);
   for (std::int64_t layer = 0; layer < images.layers; ++layer) {
     GRAVURE_CHECK(sources.of_layer(layer));
     made.stack.layers.push_back(sources.input(layer));
   }
-  for (std::int64_t r = 0; r < header.plan.job.revolutions; ++r) {
+  for (std::int64_t r = range.first; r < range.end; ++r) {
     StoredLayer revolution;
     revolution.starts_reverse = line_is_reverse(header.plan, r, 0);
     header.layers.push_back(revolution);
-    header.layer_of_revolution.push_back(static_cast<std::uint32_t>(r));
+    header.layer_of_revolution.push_back(static_cast<std::uint32_t>(r - range.first));
   }
   return {};
 }
 
-Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::string& program_path) {
+Result<Compilation> prepare_compilation(const LoadedJob& loaded, const CompileRequest& request) {
   Compilation made;
   const ImageStack& images = *loaded.images;
   const fs::path job_folder = fs::path(loaded.job.path).parent_path();
   ProgramHeader& header = made.header;
   header.plan = loaded.plan;
   header.job_text = loaded.job.text;
-  header.job_path = relative_to(loaded.job.path, fs::path(program_path).parent_path());
+  header.job_path = relative_to(loaded.job.path, fs::path(request.output).parent_path());
   header.fires = loaded.job.image.fires;
   header.lines_along = loaded.job.image.lines_along;
   if (loaded.trajectory) {
@@ -227,26 +230,38 @@ Result<Compilation> prepare_compilation(const LoadedJob& loaded, const std::stri
   made.stack.random_access = std::all_of(images.images.begin(), images.images.end(),
                                          [](const StackImage& image) { return image.info.random_access; });
 
-  GRAVURE_CHECK(loaded.plan.carriage ? add_helical_layers(images, job_folder, made)
-                                     : add_layers(loaded, job_folder, made));
+  header.shard = request.shard;
+  const Shard range = request.shard.value_or(Shard{0, loaded.plan.job.revolutions, images.layers});
+  GRAVURE_CHECK(loaded.plan.carriage ? add_helical_layers(images, job_folder, range, made)
+                                     : add_layers(loaded, job_folder, range, made));
   return made;
 }
 
 }  // namespace
 
-Result<ProgramHeader> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const std::string& output,
-                                  const GrvOptions& grv, const Command& command) {
+Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const CompileRequest& request,
+                                   const Command& command) {
   CompileOptions options;
   options.cancel = &cancel_token();  // before there is a temporary file: from here on Ctrl-C takes it away again
-  GRAVURE_TRY(Compilation made, prepare_compilation(loaded, output));
+  GRAVURE_TRY(Compilation made, prepare_compilation(loaded, request));
+  if (request.resume) {
+    GRAVURE_TRY(std::optional<ProgramHeader> there, finished_output(made.header, request, *options.cancel));
+    if (there) {
+      return CompileOutcome{std::move(*there), true};
+    }
+  }
   GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
-              create_grv(output, static_cast<std::int64_t>(made.header.layers.size()),
-                         loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), grv));
+              create_grv(request.output, static_cast<std::int64_t>(made.header.layers.size()),
+                         loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), request.grv));
   ProgressBar bar("compile");
   options.memory_bytes = command.memory_bytes();
   options.threads = command.threads;
   options.progress = &bar;
-  return compile(std::move(made.header), made.stack, opener, *sink, options);
+  GRAVURE_TRY(ProgramHeader header, compile(std::move(made.header), made.stack, opener, *sink, options));
+  if (!request.shard && may_share_bits(header)) {  // shards are compared when they are merged
+    GRAVURE_TRY(header, share_bits_of(request.output, request.grv));
+  }
+  return CompileOutcome{std::move(header), false};
 }
 
 }  // namespace gravure::cli

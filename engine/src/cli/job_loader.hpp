@@ -35,9 +35,22 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
 /// Prints the warnings of a loaded job, each with the place of the first key of the job that it names.
 void warn_of(const LoadedJob& loaded);
 
-/// Compiles a loaded job (with its images) to the program file `output`; layers that no revolution uses are left out.
-Result<ProgramHeader> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const std::string& output,
-                                  const GrvOptions& grv, const Command& command);
+/// What to compile of a job, and into what.
+struct CompileRequest {
+  std::string output;
+  GrvOptions grv;
+  std::optional<Shard> shard;  ///< these revolutions alone, as a shard
+  bool resume = false;         ///< leave an output that is whole and of this job as it is
+};
+struct CompileOutcome {
+  ProgramHeader header;
+  bool kept = false;  ///< the output was there already
+};
+
+/// Compiles a loaded job (with its images); layers that no revolution uses are left out, those that show the same
+/// picture are stored once.
+Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const CompileRequest& request,
+                                   const Command& command);
 
 /// Which layer a program stores for each of its revolutions: one for each image, band and direction of the stage,
 /// numbered as they are first used; in helical mode one for each revolution.
@@ -46,7 +59,7 @@ class StoredLayers {
   /// `layers`: images there are.
   StoredLayers(const Plan& plan, LayerOrder order, std::int64_t layers)
       : plan_(plan), map_(plan), order_(order), layers_(layers) {}
-  /// Revolutions are asked for one after the other, from 0.
+  /// Revolutions are asked for one after the other, from 0; or from a later one on, as if it were the first.
   std::uint32_t number(std::int64_t revolution);
   std::int64_t image_layer(std::int64_t revolution) const;
 

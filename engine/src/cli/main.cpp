@@ -138,6 +138,7 @@ int run(int argc, char** argv) {
   gravure::cli::add_suggest(app, command);
   gravure::cli::add_slice(app, command);
   gravure::cli::add_compile(app, command);
+  gravure::cli::add_merge(app, command);
   gravure::cli::add_inspect(app, command);
   gravure::cli::add_dump(app, command);
   gravure::cli::add_unroll(app, command);

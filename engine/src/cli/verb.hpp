@@ -69,6 +69,7 @@ void add_plan(CLI::App& app, Command& command);
 void add_suggest(CLI::App& app, Command& command);
 void add_slice(CLI::App& app, Command& command);
 void add_compile(CLI::App& app, Command& command);
+void add_merge(CLI::App& app, Command& command);
 void add_inspect(CLI::App& app, Command& command);
 void add_dump(CLI::App& app, Command& command);
 void add_unroll(CLI::App& app, Command& command);

@@ -316,7 +316,7 @@ Result<int> verify_job(const Options& options, const Command& command) {
   const std::string path = folder.path() + "/job.grv";
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.input, files, true));
-  GRAVURE_CHECK(compile_job(loaded, files, path, {}, command));
+  GRAVURE_CHECK(compile_job(loaded, files, {path, {}, {}, false}, command));
   warn_of(loaded);
   return verify_program(path, options, command);
 }

@@ -10,6 +10,8 @@
 #include <system_error>
 #include <thread>
 
+#include "column_spill.hpp"
+#include "gravure/pipeline/stored_order.hpp"
 #include "gravure/pipeline/window_reader.hpp"
 #include "gravure/raster/place.hpp"
 #include "ordered_writer.hpp"
@@ -34,14 +36,13 @@ struct Geometry {
   std::int64_t lines_of(std::int64_t chunk) const { return std::min(lines_per_chunk, lines - chunk * lines_per_chunk); }
 };
 
-/// A depth map is walked chunk by chunk, all its layers at once, so that it is decoded once, and so are helical
-/// revolutions, which share their images; a stack layer by layer.
+/// Layers are walked as interleaves_layers() says: those of one map, and helical revolutions, share their decoding.
 /// Files that only read forwards, and panels of columns, keep as many chunks together as one pass over the file yields.
 /// The order in which chunks are written follows from the images alone, never from the budget or the number of workers.
 class TaskList {
  public:
-  TaskList(const Plan& plan, const LayerStack& stack, const Geometry& geometry, std::int64_t lines_per_pass)
-      : geometry_(geometry), by_chunks_(stack.levels > 0 || plan.carriage) {
+  TaskList(const ProgramHeader& header, const LayerStack& stack, const Geometry& geometry, std::int64_t lines_per_pass)
+      : geometry_(geometry), by_chunks_(interleaves_layers(header)) {
     const std::int64_t all = geometry.chunks_per_layer();
     // A panel starts at a whole byte, up to 7 lines before the first one asked for.
     const std::int64_t fit = stack.lines_along == LinesAlong::columns ? lines_per_pass - 7 : lines_per_pass;
@@ -133,7 +134,7 @@ class Compiler {
         options_(options),
         geometry_(geometry),
         budget_(budget),
-        tasks_(header.plan, stack, geometry, LayerReader::lines_per_pass(stack, budget.panel_bytes)),
+        tasks_(header, stack, geometry, LayerReader::lines_per_pass(stack, budget.panel_bytes)),
         writer_(sink, budget.ahead_bytes) {}
 
   Result<void> run() {
@@ -255,6 +256,9 @@ Result<ProgramHeader> compile(ProgramHeader header, const LayerStack& given, con
   }
   const Geometry geometry{static_cast<std::int64_t>(header.layers.size()), stack.lines, header.line_bytes(),
                           sink.lines_per_chunk()};
+  if (!stack.spills) {
+    stack.spills = std::make_shared<ColumnSpills>();
+  }
   GRAVURE_TRY(const Budget budget, divide_budget(header.plan, stack, geometry, options));
   for (StoredLayer& layer : header.layers) {
     layer.fired_pixels = 0;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "column_spill.hpp"
 #include "gravure/raster/threshold.hpp"
 #include "gravure/raster/transpose.hpp"
 
@@ -103,6 +104,7 @@ void learn_images(LayerStack& stack, const ImageOpener& opener) {
   }
   stack.random_access = random_access;
   stack.decoder_bytes = most;
+  stack.spills = std::make_shared<ColumnSpills>();
 }
 
 std::int64_t LayerReader::lines_per_pass(const LayerStack& stack, std::int64_t panel_bytes) {
@@ -165,6 +167,7 @@ Result<void> LayerReader::select(const LayerInput& input) {
     return {};
   }
   source_.reset();
+  spill_.reset();
   held_count_ = 0;
   GRAVURE_TRY(std::unique_ptr<ImageSource> opened, open_tiled(opener_, input.path, input.page, stack_.tiles));
   GRAVURE_CHECK(check_image(input, opened->info()));
@@ -192,6 +195,38 @@ Result<void> LayerReader::read_rows(std::int64_t first_row, std::int64_t count, 
 Result<void> LayerReader::load_panel(std::int64_t first_line) {
   const std::int64_t first = first_line / 8 * 8;  // whole bytes; from where the caller reads on, so that it fits a pass
   const std::int64_t count = std::min(panel_lines_, stack_.lines - first);
+  held_count_ = 0;
+  GRAVURE_CHECK(find_spill());
+  if (spill_) {
+    held_.resize(size(count * held_line_bytes(stack_)));
+    GRAVURE_CHECK(spill_->read(first, count, held_));
+  } else {
+    GRAVURE_CHECK(decode_panel(first, count));
+  }
+  held_first_ = first;
+  held_count_ = count;
+  return {};
+}
+
+Result<void> LayerReader::find_spill() {
+  if (spill_ || !stack_.spills || stack_.samples != SampleType::bit || stack_.lines <= kMostDecodings * panel_lines_) {
+    return {};
+  }
+  const std::int64_t panel_bytes = 2 * panel_lines_ * held_line_bytes(stack_);
+  const std::int64_t slab_rows = ColumnSpill::slab_rows_for(stack_.lines, panel_bytes);
+  if (slab_rows == 0) {
+    return {};
+  }
+  held_ = {};  // what it takes to make one is in the place of the panel
+  GRAVURE_TRY(spill_, stack_.spills->get(path_, page_, [&] {
+    return ColumnSpill::make(
+        {stack_.pixels, stack_.lines, slab_rows},
+        [this](std::int64_t row, std::int64_t count, std::span<std::byte> out) { return read_rows(row, count, out); });
+  }));
+  return {};
+}
+
+Result<void> LayerReader::decode_panel(std::int64_t first, std::int64_t count) {
   const std::int64_t rows = stack_.pixels;
   const std::int64_t image_row = row_bytes(stack_.samples, stack_.lines);
   const std::int64_t band_rows = band_rows_of(stack_);
@@ -200,7 +235,6 @@ Result<void> LayerReader::load_panel(std::int64_t first_line) {
   const std::int64_t slab = row_bytes(stack_.samples, count);
   std::vector<std::byte> band(size(band_rows * image_row));
   std::vector<std::byte> columns(bits ? size(rows * slab) : 0);
-  held_count_ = 0;
   held_.resize(size(count * held_line_bytes(stack_)));
   for (std::int64_t row = 0; row < rows; row += band_rows) {
     const std::int64_t now = std::min(band_rows, rows - row);
@@ -217,8 +251,6 @@ Result<void> LayerReader::load_panel(std::int64_t first_line) {
   if (bits) {
     raster::transpose(held_, columns, rows, count);
   }
-  held_first_ = first;
-  held_count_ = count;
   return {};
 }
 

@@ -96,7 +96,7 @@ WindowReader::WindowReader(const ProgramHeader& header, const LayerStack& stack,
       panel_bytes_(panel_bytes - inner_panel_bytes(header.plan, stack, panel_bytes)),
       inner_(stack, opener, inner_panel_bytes(header.plan, stack, panel_bytes)) {
   for (std::size_t r = header.layer_of_revolution.size(); r-- > 0;) {
-    revolution_of_[header.layer_of_revolution[r]] = static_cast<std::int64_t>(r);
+    revolution_of_[header.layer_of_revolution[r]] = header.first_revolution() + static_cast<std::int64_t>(r);
   }
 }
 
@@ -206,8 +206,9 @@ Result<void> WindowReader::load_panel(std::int64_t revolution, std::int64_t firs
   held_line_ = first_line;
   held_lines_ = count;
   held_revolution_ = revolution;
-  held_revolutions_ =
-      std::min(fitting_revolutions(header_.plan, count, panel_bytes_), header_.plan.job.revolutions - revolution);
+  const std::int64_t end =
+      header_.first_revolution() + static_cast<std::int64_t>(header_.layer_of_revolution.size());  // of a shard, too
+  held_revolutions_ = std::min(fitting_revolutions(header_.plan, count, panel_bytes_), end - revolution);
   place_strips(revolution, first_line, count);
   const std::int64_t block = block_lines(header_.plan, stack_, count);
   rows_.resize(size(block * image_row_bytes(stack_)));

@@ -26,6 +26,45 @@ Result<void> check_index(const std::string& field, std::int64_t value, std::int6
   return {};
 }
 
+/// The revolutions whose layers the header tells.
+Result<Shard> revolutions_of(const ProgramHeader& header, ErrorCode code) {
+  const Shard range = header.shard.value_or(Shard{0, header.plan.job.revolutions, 1});
+  if (range.image_layers < 1) {
+    return Error{code, "layers of the image stack" + allowed(range.image_layers, "at least 1")};
+  }
+  if (range.first < 0 || range.end <= range.first || range.end > header.plan.job.revolutions) {
+    return Error{code, "shard of revolutions " + std::to_string(range.first) + " to " + std::to_string(range.end) +
+                           " (exclusive): must lie within 0 to " + std::to_string(header.plan.job.revolutions)};
+  }
+  return range;
+}
+
+/// Layers that share bits: numbered as they are first used, and alike in what the bits decide.
+Result<void> check_shared_bits(const ProgramHeader& header, std::int64_t stored, ErrorCode code) {
+  if (header.bits_of_layer.empty()) {
+    return check_equal("layers in the header", static_cast<std::int64_t>(header.layers.size()), stored,
+                       "the number of layers stored", code);
+  }
+  GRAVURE_CHECK(check_equal("layers in the header", static_cast<std::int64_t>(header.layers.size()),
+                            static_cast<std::int64_t>(header.bits_of_layer.size()), "the rows of bits_of_layer", code));
+  std::vector<std::size_t> first_user;
+  for (std::size_t layer = 0; layer < header.layers.size(); ++layer) {
+    const std::size_t bits = header.bits_of_layer[layer];
+    if (bits > first_user.size()) {
+      return Error{code, "bits_of_layer " + std::to_string(layer) + " = " + std::to_string(bits) +
+                             ": must be at most " + std::to_string(first_user.size()) + ", the next one"};
+    }
+    if (bits == first_user.size()) {
+      first_user.push_back(layer);
+    } else if (header.layers[first_user[bits]].starts_reverse != header.layers[layer].starts_reverse) {
+      return Error{code, "layer " + std::to_string(layer) + ": its bits are those of layer " +
+                             std::to_string(first_user[bits]) + ", which starts the other way"};
+    }
+  }
+  return check_equal("bits that layers use", static_cast<std::int64_t>(first_user.size()), stored,
+                     "the number of layers stored", code);
+}
+
 Result<void> check_layer(const ProgramHeader& header, std::size_t number, std::int64_t fired, ErrorCode code) {
   const StoredLayer& layer = header.layers[number];
   const std::string name = "layer " + std::to_string(number) + ": ";
@@ -50,18 +89,20 @@ Result<void> check_header(const ProgramHeader& header, const Layout& layout,
   GRAVURE_CHECK(check_equal("lines per layer", layout.lines_per_layer, header.plan.rotary.lines_per_revolution,
                             "the plan's lines per revolution", code));
   GRAVURE_CHECK(check_equal("bytes per line", layout.line_bytes, header.line_bytes(), "for the plan's pixels", code));
-  GRAVURE_CHECK(check_equal("layers in the header", static_cast<std::int64_t>(header.layers.size()), layout.layers,
-                            "the number of layers stored", code));
+  GRAVURE_CHECK(check_shared_bits(header, layout.layers, code));
+  GRAVURE_TRY(const Shard range, revolutions_of(header, code));
   GRAVURE_CHECK(check_equal("revolutions in the table", static_cast<std::int64_t>(header.layer_of_revolution.size()),
-                            header.plan.job.revolutions, "the plan's revolutions", code));
+                            range.end - range.first,
+                            header.shard ? "the shard's revolutions" : "the plan's revolutions", code));
+  const auto layers = static_cast<std::int64_t>(header.layers.size());
   for (std::size_t r = 0; r < header.layer_of_revolution.size(); ++r) {
-    GRAVURE_CHECK(
-        check_index("layer of revolution " + std::to_string(r), header.layer_of_revolution[r], layout.layers, code));
+    GRAVURE_CHECK(check_index("layer of revolution " + std::to_string(r), header.layer_of_revolution[r], layers, code));
   }
   GRAVURE_CHECK(check_set_points(header.set_points, header.plan, code));
   const auto chunks = static_cast<std::size_t>(layout.chunks_per_layer());
   for (std::size_t i = 0; i < header.layers.size(); ++i) {
-    const auto of_layer = fired_of_chunks.subspan(i * chunks, chunks);
+    const std::size_t bits = header.bits_of_layer.empty() ? i : header.bits_of_layer[i];
+    const auto of_layer = fired_of_chunks.subspan(bits * chunks, chunks);
     GRAVURE_CHECK(check_layer(header, i, std::accumulate(of_layer.begin(), of_layer.end(), std::int64_t{0}), code));
   }
   return {};

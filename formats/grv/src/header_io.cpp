@@ -17,6 +17,7 @@ namespace gravure::grv {
 namespace {
 
 constexpr const char* kFormat = "gravure program";
+constexpr const char* kBitsOfLayer = "bits_of_layer";
 constexpr const char* kUnits =
     "time in FPGA ticks (clock_multiplier per seed pulse) or pulse slots; length and frequency as the names say; "
     "bits packed 8 to a byte, most significant first, in time order, 1 fires";
@@ -57,6 +58,44 @@ Result<void> write_layers(hid_t group, const std::vector<StoredLayer>& layers) {
   GRAVURE_CHECK(write_table<std::int64_t>(group, "fired_pixels", fired, shape, "pixels"));
   GRAVURE_CHECK(write_table<std::int64_t>(group, "source", source, shape, "row of /sources"));
   return write_table<std::int64_t>(group, "level", level, shape, "slice of a depth map, else 0");
+}
+
+/// Only where layers share bits: a program without such layers is the same byte for byte as ever.
+Result<void> write_shared_bits(hid_t group, const std::vector<std::uint32_t>& bits_of_layer) {
+  if (bits_of_layer.empty()) {
+    return {};
+  }
+  const std::array<hsize_t, 1> shape = {bits_of_layer.size()};
+  return write_table<std::uint32_t>(group, kBitsOfLayer, bits_of_layer, shape, "row of layers/bits");
+}
+
+Result<void> write_revolutions(hid_t file, const ProgramHeader& header) {
+  GRAVURE_TRY(const Handle revolutions, create_group(file, "revolutions"));
+  const std::array<hsize_t, 1> shape = {header.layer_of_revolution.size()};
+  GRAVURE_CHECK(
+      write_table<std::uint32_t>(revolutions.get(), "layer", header.layer_of_revolution, shape, "layer number"));
+  if (!header.shard) {
+    return {};
+  }
+  GRAVURE_CHECK(write_attribute<std::int64_t>(revolutions.get(), "first", header.shard->first));
+  GRAVURE_CHECK(write_attribute<std::int64_t>(revolutions.get(), "end", header.shard->end));
+  return write_attribute<std::int64_t>(revolutions.get(), "image_layers", header.shard->image_layers);
+}
+
+Result<std::optional<Shard>> read_shard(hid_t file, bool shard) {
+  const Handle revolutions(H5Gopen2(file, "revolutions", H5P_DEFAULT), H5Gclose);
+  if (!revolutions.valid() || (H5Aexists(revolutions.get(), "first") > 0) != shard) {
+    return Error{ErrorCode::bad_file, shard ? "revolutions: a shard must say which ones it holds"
+                                            : "revolutions: missing, or some only although the seal says all"};
+  }
+  if (!shard) {
+    return std::optional<Shard>();
+  }
+  Shard range;
+  GRAVURE_TRY(range.first, read_attribute<std::int64_t>(revolutions.get(), "first"));
+  GRAVURE_TRY(range.end, read_attribute<std::int64_t>(revolutions.get(), "end"));
+  GRAVURE_TRY(range.image_layers, read_attribute<std::int64_t>(revolutions.get(), "image_layers"));
+  return std::optional<Shard>(range);
 }
 
 Result<void> check_root(hid_t file) {
@@ -110,12 +149,22 @@ Result<void> read_job(hid_t file, ProgramHeader& header) {
   return {};
 }
 
-Result<std::vector<StoredLayer>> read_layers(hid_t file, const Layout& layout) {
+Result<std::vector<std::uint32_t>> read_shared_bits(hid_t file) {
+  const std::string path = std::string("layers/") + kBitsOfLayer;
+  if (H5Lexists(file, path.c_str(), H5P_DEFAULT) <= 0) {
+    return std::vector<std::uint32_t>();
+  }
+  GRAVURE_TRY(const std::uint64_t layers, count_rows(file, path.c_str()));
+  const std::array<hsize_t, 1> shape = {layers};
+  return read_table<std::uint32_t>(file, path.c_str(), shape);
+}
+
+Result<std::vector<StoredLayer>> read_layers(hid_t file, std::size_t count) {
   const Handle group(H5Gopen2(file, "layers", H5P_DEFAULT), H5Gclose);
   if (!group.valid()) {
     return Error{ErrorCode::bad_file, "layers: missing"};
   }
-  const std::array<hsize_t, 1> shape = {static_cast<hsize_t>(layout.layers)};
+  const std::array<hsize_t, 1> shape = {count};
   GRAVURE_TRY(const auto starts_reverse, read_table<std::uint8_t>(group.get(), "starts_reverse", shape));
   GRAVURE_TRY(const auto fired, read_table<std::int64_t>(group.get(), "fired_pixels", shape));
   GRAVURE_TRY(const auto source, read_table<std::int64_t>(group.get(), "source", shape));
@@ -146,26 +195,33 @@ Result<void> write_header(hid_t file, hid_t layers_group, const ProgramHeader& h
   GRAVURE_CHECK(write_job(file, header));
   GRAVURE_CHECK(write_sources(file, header.sources));
   GRAVURE_CHECK(write_layers(layers_group, header.layers));
-  GRAVURE_TRY(const Handle revolutions, create_group(file, "revolutions"));
-  const std::array<hsize_t, 1> shape = {header.layer_of_revolution.size()};
-  GRAVURE_CHECK(
-      write_table<std::uint32_t>(revolutions.get(), "layer", header.layer_of_revolution, shape, "layer number"));
+  GRAVURE_CHECK(write_shared_bits(layers_group, header.bits_of_layer));
+  GRAVURE_CHECK(write_revolutions(file, header));
   return write_set_points(file, header.set_points);
 }
 
-Result<ProgramHeader> read_header(hid_t file, const Layout& layout) {
+Result<ProgramHeader> read_header(hid_t file, const Layout& layout, bool shard) {
   ProgramHeader header;
   const Handle root(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
   GRAVURE_CHECK(check_root(root.get()));
   GRAVURE_TRY(header.plan, read_plan(file));
   GRAVURE_CHECK(read_job(file, header));
   GRAVURE_TRY(header.sources, read_sources(file));
-  GRAVURE_TRY(header.layers, read_layers(file, layout));
+  GRAVURE_TRY(header.bits_of_layer, read_shared_bits(file));
+  GRAVURE_TRY(header.layers, read_layers(file, header.bits_of_layer.empty() ? static_cast<std::size_t>(layout.layers)
+                                                                            : header.bits_of_layer.size()));
   if (header.plan.job.revolutions < 1) {
     return Error{ErrorCode::bad_file,
                  "plan: revolutions = " + std::to_string(header.plan.job.revolutions) + ": must be at least 1"};
   }
-  const std::array<hsize_t, 1> shape = {static_cast<hsize_t>(header.plan.job.revolutions)};
+  GRAVURE_TRY(header.shard, read_shard(file, shard));
+  const Shard all = header.shard.value_or(Shard{0, header.plan.job.revolutions, 1});
+  if (all.first < 0 || all.end <= all.first || all.end > header.plan.job.revolutions) {
+    return Error{ErrorCode::bad_file, "revolutions: a shard of " + std::to_string(all.first) + " to " +
+                                          std::to_string(all.end) + " of " +
+                                          std::to_string(header.plan.job.revolutions)};
+  }
+  const std::array<hsize_t, 1> shape = {static_cast<hsize_t>(all.end - all.first)};
   GRAVURE_TRY(header.layer_of_revolution, read_table<std::uint32_t>(file, "revolutions/layer", shape));
   GRAVURE_TRY(header.set_points, read_set_points(file, header.plan));
   return header;

@@ -22,6 +22,6 @@ Result<void> write_root(hid_t file);
 Result<void> write_header(hid_t file, hid_t layers_group, const ProgramHeader& header);
 
 /// Reads all that write_root() and write_header() wrote, and holds the plan's numbers beside the JSON against it.
-Result<ProgramHeader> read_header(hid_t file, const Layout& layout);
+Result<ProgramHeader> read_header(hid_t file, const Layout& layout, bool shard);
 
 }  // namespace gravure::grv

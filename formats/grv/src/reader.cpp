@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,17 @@ struct Contents {
   Compression compression = Compression::none;
   ColumnReader set_points;
   ColumnReader targets;
+  bool shard = false;
+
+  /// Where the bits of a layer's chunk are; of no chunk where there is no such layer.
+  ChunkAddress stored_at(ChunkAddress address) const {
+    const std::vector<std::uint32_t>& bits_of_layer = header.bits_of_layer;
+    if (bits_of_layer.empty()) {
+      return address;
+    }
+    const bool there = address.layer >= 0 && address.layer < static_cast<std::int64_t>(bits_of_layer.size());
+    return {there ? std::int64_t{bits_of_layer[static_cast<std::size_t>(address.layer)]} : -1, address.chunk};
+  }
 };
 
 Result<Compression> read_compression(hid_t creation) {
@@ -100,7 +112,7 @@ Result<void> read_path(hid_t file, Contents& contents, std::uint64_t file_bytes)
 
 Result<void> read_contents(hid_t file, Contents& contents, std::uint64_t file_bytes) {
   const Layout& layout = contents.layout;
-  GRAVURE_TRY(contents.header, read_header(file, layout));
+  GRAVURE_TRY(contents.header, read_header(file, layout, contents.shard));
   GRAVURE_TRY(contents.compression, check_bits(file, layout));
   const std::array<hsize_t, 2> shape = {static_cast<hsize_t>(layout.layers),
                                         static_cast<hsize_t>(layout.chunks_per_layer())};
@@ -159,18 +171,20 @@ class GrvSource final : public LineSource {
 };
 
 std::string GrvSource::place(ChunkAddress address) const {
-  const std::size_t index = contents_.layout.index_of(address);
+  const std::size_t index = contents_.layout.index_of(contents_.stored_at(address));
   return channel_->file().path() + ": " + contents_.layout.describe(address) + " at byte " +
          std::to_string(contents_.tables.offset_bytes[index]);
 }
 
 Result<StoredChunk> GrvSource::fetch(ChunkAddress address) {
-  if (!contents_.layout.contains(address)) {
+  const ChunkAddress stored = contents_.stored_at(address);
+  if (!contents_.layout.contains(stored)) {
     return Error{ErrorCode::bad_argument, channel_->file().path() + ": " + contents_.layout.describe(address) +
-                                              ": there are " + std::to_string(contents_.layout.layers) + " layers of " +
-                                              std::to_string(contents_.layout.chunks_per_layer()) + " chunks"};
+                                              ": there are " + std::to_string(contents_.header.layers.size()) +
+                                              " layers of " + std::to_string(contents_.layout.chunks_per_layer()) +
+                                              " chunks"};
   }
-  const std::size_t index = contents_.layout.index_of(address);
+  const std::size_t index = contents_.layout.index_of(stored);
   StoredChunk chunk;
   chunk.address = address;
   chunk.bytes.resize(static_cast<std::size_t>(contents_.tables.stored_bytes[index]));
@@ -208,14 +222,14 @@ Result<void> GrvSource::unpack_partial(const StoredChunk& chunk, std::span<std::
 
 Result<void> GrvSource::decode(const StoredChunk& chunk, std::span<std::byte> out) const {
   const Layout& layout = contents_.layout;
-  const bool known = layout.contains(chunk.address);
+  const bool known = layout.contains(contents_.stored_at(chunk.address));
   const auto bytes = known ? static_cast<std::size_t>(layout.lines_in(chunk.address.chunk) * layout.line_bytes) : 0;
   if (!known || out.size() != bytes) {
     return Error{ErrorCode::bad_argument, channel_->file().path() + ": " + layout.describe(chunk.address) +
                                               ": no such chunk, or room for " + std::to_string(out.size()) +
                                               " bytes instead of " + std::to_string(bytes)};
   }
-  const std::size_t index = layout.index_of(chunk.address);
+  const std::size_t index = layout.index_of(contents_.stored_at(chunk.address));
   if (hash_of(chunk.bytes) != contents_.checksums[index]) {
     return damaged(chunk.address, "altered, its checksum does not hold");
   }
@@ -245,14 +259,28 @@ Result<void> GrvSource::read_targets(std::int64_t first, std::span<PathTarget> o
   return {};
 }
 
-Result<std::unique_ptr<LineSource>> open_program(std::unique_ptr<ByteFile> file) {
+Result<GrvPart> open_part(std::unique_ptr<ByteFile> file) {
   auto channel = std::make_shared<Hdf5Channel>(std::move(file));
   GRAVURE_TRY(Sealed sealed, verify_seal(channel->file()));
   Contents contents;
   contents.layout = sealed.seal.layout;
+  contents.shard = sealed.seal.shard;
   contents.tables = std::move(sealed.tables);
   GRAVURE_CHECK(read_hdf5(channel, contents));
-  return std::unique_ptr<LineSource>(std::make_unique<GrvSource>(std::move(channel), std::move(contents)));
+  const Compression compression = contents.compression;
+  return GrvPart{std::make_unique<GrvSource>(std::move(channel), std::move(contents)), compression};
+}
+
+Result<std::unique_ptr<LineSource>> open_program(std::unique_ptr<ByteFile> file) {
+  const std::string path = file->path();
+  GRAVURE_TRY(GrvPart part, open_part(std::move(file)));
+  if (const std::optional<Shard> shard = part.lines->header().shard) {
+    return Error{ErrorCode::bad_file, path + ": is a shard, revolutions " + std::to_string(shard->first) + " to " +
+                                          std::to_string(shard->end - 1) + " of " +
+                                          std::to_string(part.lines->header().plan.job.revolutions) +
+                                          ": put all shards of the job together with `gravure merge`"};
+  }
+  return std::move(part.lines);
 }
 
 }  // namespace grv
@@ -260,6 +288,11 @@ Result<std::unique_ptr<LineSource>> open_program(std::unique_ptr<ByteFile> file)
 Result<std::unique_ptr<LineSource>> open_grv(const std::string& path) {
   GRAVURE_TRY(auto file, grv::open_file(path, grv::OpenFor::reading, path));
   return grv::open_program(std::move(file));
+}
+
+Result<GrvPart> open_grv_part(const std::string& path) {
+  GRAVURE_TRY(auto file, grv::open_file(path, grv::OpenFor::reading, path));
+  return grv::open_part(std::move(file));
 }
 
 }  // namespace gravure

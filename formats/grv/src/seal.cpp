@@ -15,6 +15,8 @@ namespace gravure::grv {
 namespace {
 
 constexpr std::string_view kMagic = "gravure program\n";
+constexpr std::string_view kShardMagic = "gravure shard  \n";
+static_assert(kMagic.size() == kShardMagic.size());
 constexpr std::size_t kOwnHashAt = Seal::kBytes - 8;  // magic, version and this stay in place in every version
 constexpr std::size_t kReadBytes = std::size_t{1} << 15;
 
@@ -124,7 +126,7 @@ Error cut_off(const ByteFile& file, const Seal& seal, const ChunkTables& tables,
 
 std::array<std::byte, Seal::kBytes> encode_seal(const Seal& seal) {
   std::array<std::byte, Seal::kBytes> bytes = {};
-  std::memcpy(bytes.data(), kMagic.data(), kMagic.size());
+  std::memcpy(bytes.data(), (seal.shard ? kShardMagic : kMagic).data(), kMagic.size());
   put_integer(&bytes[16], seal.format_version, 4);
   put_integer(&bytes[24], seal.file_bytes, 8);
   put_integer(&bytes[32], static_cast<std::uint64_t>(seal.layout.layers), 8);
@@ -140,13 +142,15 @@ std::array<std::byte, Seal::kBytes> encode_seal(const Seal& seal) {
 }
 
 Result<Seal> decode_seal(std::span<const std::byte, Seal::kBytes> bytes, const std::string& path) {
-  if (std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
+  const bool shard = std::memcmp(bytes.data(), kShardMagic.data(), kShardMagic.size()) == 0;
+  if (!shard && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
     return Error{ErrorCode::bad_file, path + ": is not a gravure program: make one with `gravure compile`"};
   }
   if (get_integer(&bytes[kOwnHashAt], 8) != hash_of(bytes.first(kOwnHashAt))) {
     return Error{ErrorCode::bad_file, path + ": the seal (bytes 0..511) is damaged: get a good copy"};
   }
   Seal seal;
+  seal.shard = shard;
   seal.format_version = static_cast<std::uint32_t>(get_integer(&bytes[16], 4));
   if (seal.format_version != ProgramHeader::kFormatVersion) {
     return Error{ErrorCode::version_mismatch,
@@ -201,8 +205,9 @@ Result<std::uint64_t> hash_surroundings(const ByteFile& file, const Layout& layo
 }
 
 Result<void> write_seal(ByteFile& file, const Layout& layout, const ChunkTables& tables, std::uint64_t offset_table_at,
-                        std::uint64_t stored_table_at) {
+                        std::uint64_t stored_table_at, bool shard) {
   Seal seal;
+  seal.shard = shard;
   seal.format_version = ProgramHeader::kFormatVersion;
   seal.layout = layout;
   seal.offset_table_at = offset_table_at;

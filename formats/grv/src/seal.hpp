@@ -23,6 +23,7 @@ struct Seal {
   std::uint64_t stored_table_at = 0;    ///< file offset of /layers/stored_bytes
   std::uint64_t tables_hash = 0;        ///< XXH3-64 of the two tables, one after the other
   std::uint64_t surroundings_hash = 0;  ///< XXH3-64 of every byte after the seal that is in no chunk
+  bool shard = false;                   ///< a part of a job: another name in front
 };
 
 /// Where each chunk lies in the file; tables in layer-major order.
@@ -45,7 +46,7 @@ Result<std::uint64_t> hash_surroundings(const ByteFile& file, const Layout& layo
 
 /// Completes a written file: computes both hashes over what is on disk and writes the seal in front.
 Result<void> write_seal(ByteFile& file, const Layout& layout, const ChunkTables& tables, std::uint64_t offset_table_at,
-                        std::uint64_t stored_table_at);
+                        std::uint64_t stored_table_at, bool shard = false);
 
 struct Sealed {
   Seal seal;

@@ -341,7 +341,7 @@ Result<void> GrvSink::write_all(const ProgramHeader& header) {
   if (!closing.file.reset() || channel_->failure()) {
     return write_failure("the end of the file");
   }
-  return write_seal(channel_->file(), layout_, tables_, offset_table_at, stored_table_at);
+  return write_seal(channel_->file(), layout_, tables_, offset_table_at, stored_table_at, header.shard.has_value());
 }
 
 Result<void> GrvSink::finish(const ProgramHeader& header) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdlib>
 
 #include "pipeline_support.hpp"
 
@@ -116,19 +117,53 @@ TEST(Compile, ReadsTheSameFileTwiceWhenTwoLayersShowIt) {
   expect_naive(compile_stack(header, stack, images, 5, {.threads = 1}), header, stack, images);
 }
 
-TEST(Compile, DecodesAPictureOnceForEachPanelOfColumns) {
+TEST(Compile, DecodesAPictureOnceForEachOfAFewPanelsOfColumns) {
   MemoryImages images;
   const LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::columns, 4000, 640, 1, 3);
   const ProgramHeader header = header_for(stack, true);
-  // 24 lines a chunk; one worker gets room for panels of about a tenth of the picture, never a multiple of a chunk.
-  const std::int64_t memory = least_compile_memory(stack, 24) + 100'000;
+  // 24 lines a chunk; one worker gets room for panels of about a third of the picture, never a multiple of a chunk.
+  const std::int64_t memory = least_compile_memory(stack, 24) + 300'000;
   const Compiled compiled = compile_stack(header, stack, images, 24, {.memory_bytes = memory, .threads = 1});
   expect_naive(compiled, header, stack, images);
-  const std::int64_t panel_lines = 100'000 * 3 / 4 / (2 * 80);
+  const std::int64_t panel_lines = 300'000 * 3 / 4 / (2 * 80);
   const std::int64_t chunks_held = (panel_lines - 7) / 24;
   const std::int64_t panels = (4000 + chunks_held * 24 - 1) / (chunks_held * 24);
   EXPECT_LE(images.rows_read(), panels * 640);
-  EXPECT_GE(images.rows_read(), 4 * 640) << "this budget is to need several panels";
+  EXPECT_GE(images.rows_read(), 2 * 640) << "this budget is to need several panels";
+}
+
+TEST(Compile, DecodesAPictureOnceInAllWhereColumnsTakeManyPanels) {
+  SCOPED_TRACE(Dice::note());
+  for (const std::int64_t pixels : {640, 641, 711}) {
+    for (const int threads : {1, 3}) {
+      MemoryImages images;
+      LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::columns, 4000, pixels, 2, Dice::seed());
+      stack.random_access = false;
+      stack.decoder_bytes = 0;
+      for (const LayerInput& layer : stack.layers) {
+        images.at(layer.path).info.random_access = false;
+      }
+      const ProgramHeader header = header_for(stack, true);
+      const std::int64_t least = least_compile_memory(stack, 24);  // 2 MiB of it is taken once, not by each worker
+      const std::int64_t memory = least + (threads - 1) * (least - 2 * kMiB) + threads * 100'000;
+      expect_naive(compile_stack(header, stack, images, 24, {.memory_bytes = memory, .threads = threads}), header,
+                   stack, images);
+      EXPECT_LE(images.rows_read(), 2 * threads * pixels) << "a temporary file holds what was decoded";
+    }
+  }
+}
+
+TEST(Compile, DecodesAgainWhereNoTemporaryFileCanBeHad) {
+  MemoryImages images;
+  const LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::columns, 4000, 640, 1, 3);
+  const ProgramHeader header = header_for(stack, true);
+  const std::int64_t memory = least_compile_memory(stack, 24) + 100'000;
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  ASSERT_EQ(::setenv("TMPDIR", "/nonexistent", 1), 0);
+  expect_naive(compile_stack(header, stack, images, 24, {.memory_bytes = memory, .threads = 2}), header, stack, images);
+  EXPECT_EQ(before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", kept.c_str(), 1), 0);
+  EXPECT_GE(images.rows_read(), 4 * 640);
 }
 
 class CountedProgress final : public Progress {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -75,6 +76,14 @@ inline std::int64_t set_points_of(const Plan& plan) {
   return plan.path ? plan.rotary.lines_per_revolution + 1 : 0;
 }
 
+/// A part of a job: its revolutions first, first + 1, ... end - 1.
+struct Shard {
+  std::int64_t first = 0;
+  std::int64_t end = 0;
+  std::int64_t image_layers = 0;  ///< of the job's whole image stack: with it every revolution knows its layer
+  friend bool operator==(const Shard&, const Shard&) = default;
+};
+
 /// Everything in a program but the bits of its lines.
 struct ProgramHeader {
   static constexpr std::uint32_t kFormatVersion = 1;
@@ -87,11 +96,17 @@ struct ProgramHeader {
   std::vector<SourceImage> sources;
   std::vector<StoredLayer> layers;
   std::vector<std::uint32_t> layer_of_revolution;
+  /// Where layers show the same picture, its bits are kept once: which stored bits are those of each layer, numbered as
+  /// they are first used. Empty: every layer has its own. A LineSource takes and gives layers, never stored bits.
+  std::vector<std::uint32_t> bits_of_layer;
+  /// A shard holds these revolutions of its job alone: layer_of_revolution begins with the first of them.
+  std::optional<Shard> shard;
   std::vector<LineSetPoints> set_points;  ///< none: the plan has no scanner, or the program is older than these
 
   /// Bytes of the marking window of one line: pixels packed MSB first in time order, 1 fires, unused low bits of the
   /// last byte 0.
   std::int64_t line_bytes() const { return (plan.line.pixels + 7) / 8; }
+  std::int64_t first_revolution() const { return shard ? shard->first : 0; }
 };
 
 /// A run of whole lines of one layer, the unit of storage, compression and checksums.

@@ -13,6 +13,9 @@
 
 namespace gravure {
 
+class ColumnSpill;
+class ColumnSpills;
+
 /// Where a layer's pixels come from.
 struct LayerInput {
   std::string path;
@@ -36,16 +39,20 @@ struct LayerStack {
   std::int64_t levels = 0;                ///< depth map: number of slices; 0 for a stack of layers
   std::optional<Rational> depth_min;      ///< depth map: sample with no pulse; default 0
   std::optional<Rational> depth_max;      ///< depth map: sample with every pulse; default 1, 255 or 65535
+  std::shared_ptr<ColumnSpills> spills;   ///< of images too large to turn over in memory; none: decoded many times
 };
 
-/// Fills in what the images say of themselves: samples, random_access and decoder_bytes of all distinct ones that open.
-/// Those that do not are passed over: read_lines() says why.
+/// Fills in what the images say of themselves: samples, random_access and decoder_bytes of all distinct ones that open,
+/// and lets readers share temporary files (`spills`). Those that do not open are passed over: read_lines() says why.
 void learn_images(LayerStack& stack, const ImageOpener& opener);
 
 /// Reads the lines of a stack in bounded memory: rows straight from the file, columns by way of panels (as many columns
-/// as the budget holds, transposed in blocks; a picture with more is decoded once a panel).
+/// as the budget holds, transposed in blocks; a picture with more is decoded once a panel, or, where that were more
+/// than kMostDecodings times, once into a temporary file that holds its columns. Samples of grey are always decoded
+/// again).
 class LayerReader final : public LayerLines {
  public:
+  static constexpr std::int64_t kMostDecodings = 4;
   /// `panel_bytes` bounds what columns keep in memory; at least 8 columns are always held.
   LayerReader(const LayerStack& stack, const ImageOpener& opener, std::int64_t panel_bytes);
   Result<bool> read_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
@@ -73,6 +80,9 @@ class LayerReader final : public LayerLines {
   Result<std::span<const std::byte>> read_samples(std::int64_t first_line, std::int64_t count);
   /// Holds the panel of columns that contains `first_line`.
   Result<void> load_panel(std::int64_t first_line);
+  Result<void> decode_panel(std::int64_t first, std::int64_t count);
+  /// The temporary file with the columns of this image, where it pays.
+  Result<void> find_spill();
   /// Where a grey sample becomes a pulse in this layer.
   Result<Limit> limit_of(const LayerInput& input) const;
   void cut(std::span<const std::byte> samples, std::int64_t count, const Limit& limit, std::span<std::byte> out) const;
@@ -83,6 +93,7 @@ class LayerReader final : public LayerLines {
   std::unique_ptr<ImageSource> source_;
   std::string path_;
   std::int64_t page_ = -1;
+  std::shared_ptr<const ColumnSpill> spill_;
   std::int64_t next_row_ = 0;  ///< what a file that only runs upwards has not given yet
   // The lines kept: a block of sample rows, or a panel of columns already turned into lines.
   std::vector<std::byte> held_;

@@ -24,9 +24,10 @@ struct GrvOptions {
 /// Starts a program file of `layers` layers with `lines_per_layer` lines of `line_bytes` bytes. The same chunks put in
 /// the same order give the same file, byte for byte, whatever the number of threads that encoded them.
 ///
-/// encode() refuses a chunk of the wrong size (bad_argument). put() refuses a chunk out of place, put before, or
-/// altered since encode() (bad_argument); a full disk is io. finish() refuses a missing chunk, a header that does not
-/// fit the chunks, fired pixels that do not add up, and set bits beyond the last pixel of a line (bad_argument).
+/// Layers that share bits (ProgramHeader::bits_of_layer) are one of the `layers` here. encode() refuses a chunk of the
+/// wrong size (bad_argument). put() refuses a chunk out of place, put before, or altered since encode() (bad_argument);
+/// a full disk is io. finish() refuses a missing chunk, a header that does not fit the chunks, fired pixels that do not
+/// add up, and set bits beyond the last pixel of a line (bad_argument).
 /// Fails with out_of_range for sizes below 1 or beyond 1 GiB a chunk, io where the file cannot be created.
 Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64_t layers, std::int64_t lines_per_layer,
                                              std::int64_t line_bytes, const GrvOptions& options = {});
@@ -36,5 +37,13 @@ Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64
 /// cut off, lengthened or altered (naming the first missing chunk where it is cut), version_mismatch for a format
 /// version other than ProgramHeader::kFormatVersion.
 Result<std::unique_ptr<LineSource>> open_grv(const std::string& path);
+
+/// A program, or a shard of one (ProgramHeader::shard), and how its bits are stored.
+struct GrvPart {
+  std::unique_ptr<LineSource> lines;
+  GrvOptions::Compression compression = GrvOptions::Compression::zstd;
+};
+/// Opens a program or a shard; open_grv() refuses shards with bad_file. Errors: those of open_grv().
+Result<GrvPart> open_grv_part(const std::string& path);
 
 }  // namespace gravure

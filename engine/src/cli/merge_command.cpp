@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "program_files.hpp"
+#include "program_parts.hpp"
+#include "verb.hpp"
+
+namespace gravure::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> shards;
+  std::string output;
+};
+
+Result<int> run(const Options& options, const Command& command) {
+  GRAVURE_CHECK(refuse_overwrite(options.output, options.shards));
+  GRAVURE_TRY(const ProgramHeader header, merge_shards(options.shards, options.output));
+  if (command.json) {
+    print_json({{"program", options.output},
+                {"shards", options.shards.size()},
+                {"revolutions", header.layer_of_revolution.size()},
+                {"layers", header.layers.size()},
+                {"stored_layers", stored_layers(header)}});
+  } else {
+    print(fmt::format("{}: {} {} from {} shards, {} stored layers\n", options.output, header.layer_of_revolution.size(),
+                      turns_name(header.plan), options.shards.size(), stored_layers(header)));
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, Command& command) {
+  CLI::App* verb =
+      add_verb(app, command, "merge", "Shards of a job, made by compile --revolutions, to its program file");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("SHARD", options->shards, "Shards, in any order: together every revolution of the job once")
+      ->required();
+  verb->add_option("-o,--output", options->output, "Program file to write (.grv)")->required();
+  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+}
+
+}  // namespace gravure::cli
