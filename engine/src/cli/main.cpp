@@ -16,6 +16,7 @@
 #include "motion_command.hpp"
 #include "texture_command.hpp"
 #include "verb.hpp"
+#include "zones_command.hpp"
 
 namespace {
 
@@ -152,6 +153,7 @@ int run(int argc, char** argv) {
   gravure::cli::add_devices(app, command);
   gravure::cli::add_motion_command(app, command);
   gravure::cli::add_texture(app, command);
+  gravure::cli::add_zones(app, command);
   gravure::cli::add_chart_command(app, command);
   gravure::cli::add_completion(app, command);
   gravure::cli::add_man(app, command);

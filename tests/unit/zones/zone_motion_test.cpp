@@ -1,0 +1,130 @@
+#include "gravure/zones/zone_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ceramic_core.hpp"
+
+namespace gravure::zones {
+namespace {
+
+constexpr double kPeriod_s = 50e-6;
+
+ZonePlanRequest small_core() {
+  ZonePlanRequest request;
+  request.contours = test::CeramicCore::contours();
+  for (std::size_t i = 0; i < 6; ++i) {
+    request.contours[i] = request.contours[i * 10];
+    request.contours[i].id = static_cast<std::int64_t>(i);
+  }
+  request.contours.resize(6);
+  request.max_incidence_rad = 5 * std::numbers::pi / 180;
+  request.max_layer_mm = 0.15;
+  request.machine = example_machine();
+  return request;
+}
+
+/// Distance of a point from the nearest wanted line.
+double off_targets(const std::vector<PathTarget>& targets, double along_mm, const Vector3& spot) {
+  const auto after = std::upper_bound(targets.begin(), targets.end(), along_mm,
+                                      [](double along, const PathTarget& target) { return along < target.along_mm; });
+  double least = 1e9;
+  for (auto to = after - targets.begin() > 2 ? after - 2 : targets.begin() + 1; to != targets.end() && to <= after + 1;
+       ++to) {
+    const Vector3 a((to - 1)->position_mm.data());
+    const Vector3 b(to->position_mm.data());
+    const double share = b == a ? 0 : std::clamp((spot - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+    if (to->along_mm > (to - 1)->along_mm) {
+      least = std::min(least, (a + share * (b - a) - spot).norm());
+    }
+  }
+  return least;
+}
+
+TEST(ZoneMotion, PutsTheSpotOnTheContoursAndStandsStillWithTheStagesWhileItMarks) {
+  const ZonePlanRequest request = small_core();
+  const ZonePlan plan = plan_zones(request).value();
+  const auto made = ZoneMotion::create(plan, request.machine, {kPeriod_s, 200});
+  ASSERT_TRUE(made) << made.error().message;
+  const ZoneMotion& motion = *made.value();
+  EXPECT_NEAR(motion.length_mm(), plan.length_mm, 1e-9);
+  std::vector<PathInstant> instants(static_cast<std::size_t>(motion.instants()));
+  ASSERT_TRUE(motion.read(0, instants));
+  EXPECT_EQ(instants[0].axes, (std::array<double, 7>{}));
+  EXPECT_EQ(instants[0].along_mm, 0);
+  EXPECT_NEAR(instants.back().along_mm, plan.length_mm, 1e-9);
+  const ZoneTimes& times = motion.times();
+  EXPECT_NEAR(times.stage_s + times.jump_s + times.mark_s, kPeriod_s * static_cast<double>(instants.size() - 1), 1e-6);
+  for (std::size_t i = 1; i < instants.size(); ++i) {
+    const PathInstant& now = instants[i];
+    ASSERT_GE(now.along_mm, instants[i - 1].along_mm);
+    if (now.along_mm == instants[i - 1].along_mm) {
+      continue;
+    }
+    for (std::size_t axis = 0; axis < 5; ++axis) {
+      ASSERT_EQ(now.axes[axis], instants[i - 1].axes[axis]) << i;
+    }
+    const Vector3 focused =
+        forward(request.machine, std::span(now.axes).first(5), {now.axes[5], now.axes[6], 0}).position_mm;
+    const Vector3 beam =
+        forward(request.machine, std::span(now.axes).first(5), {now.axes[5], now.axes[6], 0}).towards_head;
+    // In focus to within half a layer; across the beam, on the line.
+    double least = 1e9;
+    for (int step = -100; step <= 100; ++step) {
+      least = std::min(least, off_targets(motion.targets(), now.along_mm, focused + step * 0.00075 * beam));
+    }
+    ASSERT_LT(least, 5e-4) << i;
+  }
+}
+
+TEST(ZoneMotion, KeepsAllAxesWithinTheirLimits) {
+  const ZonePlanRequest request = small_core();
+  const ZonePlan plan = plan_zones(request).value();
+  const auto made = ZoneMotion::create(plan, request.machine, {kPeriod_s, 200}).value();
+  std::vector<PathInstant> instants(static_cast<std::size_t>(made->instants()));
+  ASSERT_TRUE(made->read(0, instants));
+  for (std::size_t axis = 0; axis < 7; ++axis) {
+    const double speed =
+        axis < 5 ? *request.machine.joints[axis].limits.max_speed : *request.machine.head.max_speed_mm_s;
+    const double jerk = axis < 5 ? *request.machine.joints[axis].limits.max_jerk : *request.machine.head.max_jerk_mm_s3;
+    for (std::size_t i = 3; i < instants.size(); ++i) {
+      const auto at = [&](std::size_t back) { return instants[i - back].axes[axis]; };
+      ASSERT_LE(std::abs(at(0) - at(1)) / kPeriod_s, speed * (1 + 1e-6)) << axis;
+      ASSERT_LE(std::abs(at(0) - 3 * at(1) + 3 * at(2) - at(3)) / std::pow(kPeriod_s, 3), jerk * 1.001 + 0.5) << axis;
+    }
+  }
+}
+
+TEST(ZoneMotion, ReadsTheSameInPieces) {
+  const ZonePlanRequest request = small_core();
+  const ZonePlan plan = plan_zones(request).value();
+  const auto made = ZoneMotion::create(plan, request.machine, {kPeriod_s, 200}).value();
+  std::vector<PathInstant> all(static_cast<std::size_t>(made->instants()));
+  ASSERT_TRUE(made->read(0, all));
+  std::vector<PathInstant> piece(997);
+  for (std::int64_t first = 0; first + 997 <= made->instants(); first += 997) {
+    ASSERT_TRUE(made->read(first, piece));
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      ASSERT_EQ(piece[i].axes, all[static_cast<std::size_t>(first) + i].axes);
+      ASSERT_EQ(piece[i].along_mm, all[static_cast<std::size_t>(first) + i].along_mm);
+    }
+  }
+  EXPECT_EQ(made->read(made->instants(), piece).error().code, ErrorCode::bad_argument);
+}
+
+TEST(ZoneMotion, RefusesMachinesItCannotTime) {
+  const ZonePlanRequest request = small_core();
+  const ZonePlan plan = plan_zones(request).value();
+  Machine machine = request.machine;
+  machine.head.max_jerk_mm_s3.reset();
+  EXPECT_EQ(ZoneMotion::create(plan, machine, {kPeriod_s, 200}).error().code, ErrorCode::bad_argument);
+  EXPECT_EQ(ZoneMotion::create(plan, request.machine, {0, 200}).error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(ZoneMotion::create(plan, request.machine, {kPeriod_s, 200, 10}).error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(ZoneMotion::create({}, request.machine, {kPeriod_s, 200}).error().code, ErrorCode::bad_argument);
+}
+
+}  // namespace
+}  // namespace gravure::zones
