@@ -158,7 +158,7 @@ void add_plan_verb(CLI::App& parent, Command& command) {
   CLI::App* verb = add_verb(parent, command, "plan", "Contours -> zones, layers and stage positions");
   const auto options = std::make_shared<Options>();
   verb->add_option("contours", options->contours, "Contours as JSON or CSV")->required();
-  verb->add_option("--transform", options->transform, "Where the part is: a file of gravure register");
+  verb->add_option("--transform", options->transform, "Where the part is: JSON with transform[4][4]");
   verb->add_option("--method", options->method, "cover: the fewest zones; kmeans: the published way")
       ->check(CLI::IsMember({"cover", "kmeans"}))
       ->capture_default_str();

@@ -20,7 +20,8 @@ constexpr std::size_t kMostTransformBytes = std::size_t{1} << 20U;
 Result<Eigen::Matrix4d> read_transform(const std::string& path) {
   GRAVURE_TRY(const std::string text, read_file(path, kMostTransformBytes));
   const auto refuse = [&path](const std::string& problem) {
-    return Error{ErrorCode::bad_file, path + ": " + problem + "; take a file that gravure register -o has written"};
+    return Error{ErrorCode::bad_file,
+                 path + ": " + problem + "; give transform as four rows of four numbers, the last 0, 0, 0, 1"};
   };
   const Json document = Json::parse(text, nullptr, false);
   if (!document.is_object() || !document.contains("transform") || !document["transform"].is_array() ||

@@ -10,7 +10,7 @@
 
 namespace gravure::cli {
 
-/// The contours of a file where the part is: moved by `transform` (a file of `gravure register`) if there is one. Warns
+/// The contours of a file where the part is: moved by `transform` if there is one. Warns
 /// of what was read otherwise than it stands there.
 Result<std::vector<Contour>> load_contours(const std::string& path, const std::string& transform);
 
