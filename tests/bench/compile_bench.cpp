@@ -14,18 +14,18 @@
 #include <string>
 #include <vector>
 
+#include "bench_case.hpp"
 #include "gravure/emulator/emulated_device.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/tiff_writer.hpp"
-#include "gravure/pipeline/compile.hpp"
-#include "gravure/sync/make_plan.hpp"
 #include "gravure/twin/verify.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace gravure;
+using namespace gravure::bench;
 
 constexpr std::int64_t kWidth = 3500;
 constexpr std::int64_t kHeight = 27489;
@@ -74,35 +74,6 @@ std::vector<std::uint16_t> depths(std::int64_t y) {
 
 constexpr std::int64_t kMapLevels = 100;
 
-/// What is compiled: a bilevel layer along rows or columns, or a map in kMapLevels slices.
-struct Picture {
-  std::string name;
-  std::string path;
-  LinesAlong along = LinesAlong::rows;
-  bool is_map = false;
-
-  std::int64_t lines() const { return along == LinesAlong::rows ? kHeight : kWidth; }
-  std::int64_t pixels() const { return along == LinesAlong::rows ? kWidth : kHeight; }
-  std::int64_t layers() const { return is_map ? kMapLevels : 1; }
-  std::int64_t line_bytes() const { return (pixels() + 7) / 8; }
-};
-
-/// Stops at the first thing that goes wrong: a benchmark of a failure would mislead.
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().message.c_str());
-    std::exit(1);
-  }
-  return std::move(result).value();
-}
-void must(const Result<void>& result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().message.c_str());
-    std::exit(1);
-  }
-}
-
 void write_map(const std::string& path) {
   TIFF* tiff = TIFFOpen(path.c_str(), "w");
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(kWidth));
@@ -139,69 +110,15 @@ std::vector<Picture> write_pictures(const fs::path& folder) {
       BilevelTiffWriter writer = must(BilevelTiffWriter::create(path, page));
       must(writer.append_rows(bits));
       must(writer.commit());
-      pictures.push_back({kind + "/" + codec, path});
+      pictures.push_back({kind + "/" + codec, path, kWidth, kHeight});
     }
   }
-  pictures.push_back({"columns/none", (folder / "honeycomb_none.tif").string(), LinesAlong::columns});
-  pictures.push_back({"columns/G4", (folder / "honeycomb_G4.tif").string(), LinesAlong::columns});
-  pictures.push_back({"map of 100/Deflate", (folder / "map.tif").string(), LinesAlong::rows, true});
+  pictures.push_back({"columns/none", (folder / "honeycomb_none.tif").string(), kWidth, kHeight, LinesAlong::columns});
+  pictures.push_back({"columns/G4", (folder / "honeycomb_G4.tif").string(), kWidth, kHeight, LinesAlong::columns});
+  pictures.push_back({"map of 100/Deflate", (folder / "map.tif").string(), kWidth, kHeight, LinesAlong::rows,
+                      SampleType::u16, kMapLevels});
   write_map(pictures.back().path);
   return pictures;
-}
-
-/// Takes chunks and throws them away: compiling without writing.
-class NullSink final : public LineSink {
- public:
-  explicit NullSink(std::int64_t line_bytes) : line_bytes_(line_bytes) {}
-  std::int64_t lines_per_chunk() const noexcept override { return (std::int64_t{1} << 20) / line_bytes_; }
-  Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const override {
-    benchmark::DoNotOptimize(lines.data());
-    return StoredChunk{address, {}, 0, 0, 0};
-  }
-  Result<void> put(const StoredChunk&) override { return {}; }
-  Result<void> finish(const ProgramHeader&) override { return {}; }
-
- private:
-  std::int64_t line_bytes_;
-};
-
-Job job(const Picture& picture) {
-  Job made;
-  made.laser = {82'000'000, 41, 16'400'000};
-  made.fpga = {2, 32, false, 4'294'967'295U};
-  made.scanner = {8, 20, 1800, 0, true, 0};
-  made.rotary.diameter_mm = 70;
-  made.rotary.lines_per_revolution = picture.lines();
-  made.rotary.encoder_lines = 11840;
-  made.rotary.interpolation_bits = 13;
-  made.rotary.max_ab_hz = 40'000'000;
-  made.image.fires = Fires::white;
-  made.limits.seam_um = Rational(1, 2);
-  return made;
-}
-
-struct Case {
-  ProgramHeader header;
-  LayerStack stack;
-};
-
-Case case_of(const Picture& picture) {
-  Case made;
-  made.header.plan = must(make_plan(job(picture), picture.pixels(), picture.layers()));
-  made.header.sources.push_back({picture.path, 0, kWidth, kHeight, std::string(64, '0')});
-  for (std::int64_t layer = 0; layer < picture.layers(); ++layer) {
-    made.header.layers.emplace_back();
-    made.header.layers.back().level = picture.is_map ? layer : 0;
-    made.header.layers.back().starts_reverse = line_is_reverse(made.header.plan, layer, 0);
-    made.header.layer_of_revolution.push_back(static_cast<std::uint32_t>(layer));
-    made.stack.layers.push_back({picture.path, 0, layer});
-  }
-  made.stack.lines = picture.lines();
-  made.stack.pixels = picture.pixels();
-  made.stack.lines_along = picture.along;
-  made.stack.samples = picture.is_map ? SampleType::u16 : SampleType::bit;
-  made.stack.levels = picture.is_map ? kMapLevels : 0;
-  return made;
 }
 
 void decode(benchmark::State& state, const std::string& path) {
