@@ -150,6 +150,7 @@ int run(int argc, char** argv) {
   gravure::cli::add_trajectory(app, command);
   gravure::cli::add_export(app, command);
   gravure::cli::add_calibrate(app, command);
+  gravure::cli::add_register(app, command);
   gravure::cli::add_devices(app, command);
   gravure::cli::add_motion_command(app, command);
   gravure::cli::add_texture(app, command);

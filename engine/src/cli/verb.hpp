@@ -80,6 +80,7 @@ void add_exposure(CLI::App& app, Command& command);
 void add_trajectory(CLI::App& app, Command& command);
 void add_export(CLI::App& app, Command& command);
 void add_calibrate(CLI::App& app, Command& command);
+void add_register(CLI::App& app, Command& command);
 void add_devices(CLI::App& app, Command& command);
 void add_chart_command(CLI::App& app, Command& command);
 void add_completion(CLI::App& app, Command& command);

@@ -73,6 +73,11 @@ double largest_beside(const CadSurface& cad, double radius_mm) {
   return std::max(kBesideSpacings * cad.spacing_mm, kBesideRadii * radius_mm);
 }
 
+NormalSystem system_for(const CadSurface& cad, const IcpSettings& settings) {
+  return settings.length_mm > 0 ? NormalSystem(settings.centre, settings.length_mm)
+                                : NormalSystem(cad.centre, cad.radius_mm);
+}
+
 bool apply(Similarity& pose, SmallMotion step, double most_scale) {
   const double limit = std::log(most_scale);
   const double now = std::log(pose.scale);
@@ -128,7 +133,7 @@ IcpState icp(const CadSurface& cad, const ScanPoints& scan, const Similarity& st
   Stall stall;
   while (state.iterations < settings.most_iterations) {
     const std::vector<Pair> pairs = find_pairs(cad, scan, state.pose, state.radius_mm);
-    state.system = NormalSystem(cad.centre, cad.radius_mm);
+    state.system = system_for(cad, settings);
     if (pairs.size() < kFewestPairs) {
       return state;
     }

@@ -23,6 +23,9 @@ struct IcpSettings {
   double weak_share = 1e-4;
   double most_scale = 1.25;
   double scale_deviation = 0.05;
+  /// Of turns and scale; length 0: those of the CAD.
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double length_mm = 0;
   int most_iterations = 100;
   /// Stops when a step moves the points by less than this share of the CAD's radius.
   double least_step = 1e-7;
@@ -56,6 +59,8 @@ inline constexpr std::size_t kFewestPairs = 12;
 bool facing_agrees(const CadSurface& cad, const Eigen::Vector3d& turned, std::size_t sample);
 /// How far beside its nearest sample a point may lie: further, it is beyond the edge of the surface.
 double largest_beside(const CadSurface& cad, double radius_mm);
+/// Empty, about the centre that the settings name.
+NormalSystem system_for(const CadSurface& cad, const IcpSettings& settings);
 /// Moves the pose by a step, scale kept within its limits; false when the step is not finite.
 bool apply(Similarity& pose, SmallMotion step, double most_scale);
 

@@ -59,6 +59,12 @@ SmallMotion NormalSystem::step(int unknowns, double weak_share, double log_scale
   return motion;
 }
 
+int NormalSystem::weak_directions(int unknowns, double weak_share) const {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix(unknowns), Eigen::EigenvaluesOnly);
+  const double least = weak_share * solver.eigenvalues()[unknowns - 1];
+  return static_cast<int>((solver.eigenvalues().array() <= least).count());
+}
+
 double NormalSystem::scale_share(double weak_share) const {
   const Eigen::MatrixXd all = matrix(kAllUnknowns);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rigid(

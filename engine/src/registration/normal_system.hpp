@@ -37,6 +37,7 @@ class NormalSystem {
   /// The step that makes the sum of squares least, none along eigenvectors below `weak_share` of the largest
   /// eigenvalue. `log_scale` is pulled to 0 as a value known to `scale_deviation` would.
   SmallMotion step(int unknowns, double weak_share, double log_scale, double scale_deviation) const;
+  int weak_directions(int unknowns, double weak_share) const;
   /// How well scale is held when the rigid motion is free, as a share of the largest eigenvalue.
   double scale_share(double weak_share) const;
 

@@ -133,7 +133,7 @@ bool solve_planes(const CadSurface& cad, const ScanPoints& scan, const std::vect
   const auto good = std::count_if(planes.begin(), planes.end(), [](const Plane& plane) { return plane.resolved; });
   const bool all = 2 * good < static_cast<std::ptrdiff_t>(planes.size());
   for (int i = 0; i < kMostSteps; ++i) {
-    state.system = NormalSystem(cad.centre, cad.radius_mm);
+    state.system = system_for(cad, settings);
     for (const Plane& plane : planes) {
       if (all || plane.resolved) {
         add_plane(state.system, cad, state.pose.point(scan.points[plane.point]), plane);
