@@ -25,7 +25,7 @@ std::string steps(const TreeVerb& root, const std::string& separator, const std:
   for (const TreeVerb* verb : all_verbs(root)) {
     if (!verb->path.empty()) {
       const std::string slash = verb->path.size() == 1 ? "/" : "";
-      joined += (joined.empty() ? "" : separator) + quote + slash + key_of(*verb) + quote;
+      joined.append(joined.empty() ? "" : separator).append(quote).append(slash).append(key_of(*verb)).append(quote);
     }
   }
   return joined;
