@@ -4,8 +4,10 @@
 #include <memory>
 #include <utility>
 
+#include "export_path.hpp"
 #include "folder_output.hpp"
 #include "gravure/scan/xy2_100.hpp"
+#include "motion_options.hpp"
 #include "program_files.hpp"
 #include "program_trajectory.hpp"
 #include "text_output.hpp"
@@ -21,6 +23,8 @@ struct Options {
   std::string folder;
   int form = 0;                  ///< 0: the smallest that carries the resolution
   std::int64_t revolution = -1;  ///< helical mode: which one
+  std::string nc_folder;         ///< programs that follow a path
+  double block_ms = 5;
 };
 
 /// What is written, file by file.
@@ -102,6 +106,9 @@ Result<void> check_revolution(const Options& options, const Plan& plan) {
 }
 
 Result<int> run(const Options& options, const Command& command) {
+  if (!options.nc_folder.empty()) {
+    return export_path(options.program, options.nc_folder, options.block_ms, command);
+  }
   GRAVURE_TRY(const ProgramTrajectory opened, open_trajectory(options.program));
   const ProgramHeader& header = opened.program->header();
   const Plan& plan = header.plan;
@@ -150,14 +157,27 @@ void add_export(CLI::App& app, Command& command) {
                             "run once; helical jobs, the lines of one revolution in order");
   const auto options = std::make_shared<Options>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
-  verb->add_option("--xy2-100", options->folder, "Folder for the frame files: new, or empty")->required();
+  CLI::Option* frames = verb->add_option("--xy2-100", options->folder, "Folder for the frame files: new, or empty");
+  CLI::Option* nc = verb->add_option("--nc", options->nc_folder,
+                                     "Programs that follow a path: folder, new or empty, for NC programs of the "
+                                     "stages, frames of the galvo and a table of all axes")
+                        ->excludes(frames);
+  verb->add_option("--block-ms", options->block_ms, "Length of a block of the NC programs")
+      ->needs(nc)
+      ->check(number_from(0.001, 10'000))
+      ->capture_default_str();
   verb->add_option("--form", options->form,
                    "Position bits: 16 (XY2-100), 18 (XY2-100 Enhanced) or 20 (XY3-100); default: the fewest that carry "
                    "scanner.resolution_bits")
       ->check(CLI::IsMember({"16", "18", "20"}));
   verb->add_option("--revolution", options->revolution, "Helical jobs: which revolution, from 0")
       ->check(integer_from(0, kMostIndex));
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback([&command, options] {
+    if (options->folder.empty() && options->nc_folder.empty()) {
+      throw CLI::RequiredError("--xy2-100 or --nc");
+    }
+    command.run = [&command, options] { return run(*options, command); };
+  });
 }
 
 }  // namespace gravure::cli

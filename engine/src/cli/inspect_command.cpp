@@ -56,6 +56,9 @@ std::string text_of(const ProgramHeader& header, const std::string& path) {
     text += fmt::format("scanner   {} set-points a line, for {} kinds of lines\n", header.set_points[0].u_counts.size(),
                         header.set_points.size());
   }
+  if (header.plan.path) {
+    return text + fmt::format("pulses    {} fire\n", header.layers.empty() ? 0 : header.layers[0].fired_pixels);
+  }
   text += fmt::format("images    {} fires; {} sources, {} stored layers, {} {}\n", polarity_name(header.fires),
                       header.sources.size(), stored_layers(header), header.layer_of_revolution.size(),
                       turns_name(header.plan));

@@ -9,6 +9,7 @@
 #include "gravure/formats/plan_json.hpp"
 #include "job_loader.hpp"
 #include "job_scanner.hpp"
+#include "path_program.hpp"
 #include "plan_text.hpp"
 #include "program_files.hpp"
 #include "verb.hpp"
@@ -121,6 +122,9 @@ std::string plan_text(const Plan& plan) {
   row("clock", fmt::format("seed {} Hz, FPGA {} Hz, pulses {} Hz (every seed pulse no. {}), {} ticks a slot",
                            plan.clock.seed_hz, plan.clock.fpga_hz, number(plan.clock.pulse_hz),
                            plan.clock.pulse_divider, plan.clock.ticks_per_slot));
+  if (plan.path) {
+    return text + path_text(plan);
+  }
   row("line", fmt::format("{} pixels in {} slots = {} ticks, {} ticks a microvector, {} lines/s, scan speed {} m/s",
                           plan.line.pixels, plan.line.slots, plan.line.ticks,
                           plan.line.slots_per_microvector * plan.clock.ticks_per_slot, number(plan.line.rate_hz),

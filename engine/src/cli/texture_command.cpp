@@ -157,6 +157,7 @@ void add_texture(CLI::App& app, Command& command) {
       app.add_subcommand("texture", "Paths on freeform surfaces with five stages and the galvo at once");
   texture->require_subcommand(1);
   add_decompose(*texture, command);
+  add_texture_compile(*texture, command);
 }
 
 }  // namespace gravure::cli

@@ -13,6 +13,7 @@
 #include "gravure/formats/tiff.hpp"
 #include "gravure/formats/tiff_writer.hpp"
 #include "gravure/twin/unroll.hpp"
+#include "path_program.hpp"
 #include "program_files.hpp"
 #include "verb.hpp"
 
@@ -113,6 +114,9 @@ Result<int> run(const Options& options, const Command& command) {
   GRAVURE_CHECK(check_name(options.output));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
+  if (header.plan.path) {
+    return unroll_path_program(*program, options.output, command);
+  }
   const std::optional<LayerOrigin> origin = picture_origin(header, options);
   GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options, origin));
   UnrollOptions unroll_options;

@@ -19,6 +19,7 @@
 #include "gravure/twin/unroll.hpp"
 #include "gravure/twin/verify.hpp"
 #include "job_loader.hpp"
+#include "path_program.hpp"
 #include "program_files.hpp"
 #include "verb.hpp"
 
@@ -227,6 +228,9 @@ void note_changed_sources(const ProgramHeader& header, const std::vector<std::st
 Result<int> verify_program(const std::string& path, const Options& options, const Command& command) {
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
   const ProgramHeader& header = program->header();
+  if (header.plan.path) {
+    return verify_path_program(*program, {}, command);
+  }
   const ImageFiles files;
   GRAVURE_TRY(const FoundImages found, find_images(header, path, options.images, files));
   GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));

@@ -174,6 +174,7 @@ void describe_path(Archive& archive, P& path, R& rotary) {
   archive.optional_section("picture", path.picture, [&](auto& picture) {
     archive.field("width", picture.width);
     archive.field("height", picture.height);
+    archive.field("row_pitch_um", rotary.line_pitch_um);
   });
   archive.field("max_focus_offset_um", path.max_focus_offset_um);
   archive.field("max_incidence_deg", path.max_incidence_deg);

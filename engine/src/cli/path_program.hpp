@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "gravure/core/program.hpp"
+#include "gravure/twin/verify_path.hpp"
+#include "verb.hpp"
+
+namespace gravure::cli {
+
+/// What `verify` does with a program that follows a path.
+Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& options, const Command& command);
+
+/// What `unroll` does with a picture on a surface: every pulse that fired, put on the workpiece and projected back
+/// along z.
+Result<int> unroll_path_program(LineSource& program, const std::string& output, const Command& command);
+
+/// What `inspect` says of one, after name and mode.
+std::string path_text(const Plan& plan);
+
+}  // namespace gravure::cli
