@@ -14,6 +14,7 @@
 
 #include "log.hpp"
 #include "motion_command.hpp"
+#include "report_command.hpp"
 #include "texture_command.hpp"
 #include "verb.hpp"
 #include "zones_command.hpp"
@@ -144,6 +145,8 @@ int run(int argc, char** argv) {
   gravure::cli::add_dump(app, command);
   gravure::cli::add_unroll(app, command);
   gravure::cli::add_verify(app, command);
+  gravure::cli::add_report(app, command);
+  gravure::cli::add_preview(app, command);
   gravure::cli::add_emulate(app, command);
   gravure::cli::add_run(app, command);
   gravure::cli::add_exposure(app, command);

@@ -1,0 +1,93 @@
+#include "gravure/report/area_count.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "gravure/raster/count.hpp"
+
+namespace gravure::report {
+namespace {
+
+std::size_t index_of(std::int64_t value) {
+  return static_cast<std::size_t>(value);
+}
+
+/// Bits [from, to) of one byte, 0 the most significant.
+int count_in_byte(std::byte byte, int from, int to) {
+  const unsigned mask = (0xFFU >> static_cast<unsigned>(from)) & (0xFF00U >> static_cast<unsigned>(to));
+  return std::popcount(static_cast<unsigned>(byte) & mask);
+}
+
+}  // namespace
+
+std::int64_t cell_begin(std::int64_t index, std::int64_t cells, std::int64_t pixels) noexcept {
+  return pixels / cells * index + pixels % cells * index / cells;  // index <= cells: no overflow below 2^31 cells
+}
+
+Extent choose_cells(const Extent& picture, double pixel_width, double pixel_height, std::int64_t most) {
+  const double width = static_cast<double>(picture.width) * pixel_width;
+  const double height = static_cast<double>(picture.height) * pixel_height;
+  const auto within = [most](double wanted, std::int64_t pixels) {
+    const double bounded = std::min(wanted, static_cast<double>(std::min(pixels, most)));
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(bounded));
+  };
+  if (picture.area() <= most) {
+    return picture;
+  }
+  const std::int64_t columns = within(std::sqrt(static_cast<double>(most) * width / height), picture.width);
+  const std::int64_t rows = within(static_cast<double>(most / columns), picture.height);
+  // What a flat picture does not need of one direction goes to the other.
+  return {within(static_cast<double>(most / rows), picture.width), rows};
+}
+
+std::int64_t count_between(std::span<const std::byte> row, std::int64_t from, std::int64_t to) {
+  if (from >= to) {
+    return 0;
+  }
+  const std::int64_t first = from / 8;
+  const std::int64_t last = (to - 1) / 8;
+  const int head = static_cast<int>(from % 8);
+  const int tail = static_cast<int>(to - 8 * last);
+  if (first == last) {
+    return count_in_byte(row[index_of(first)], head, tail);
+  }
+  return count_in_byte(row[index_of(first)], head, 8) + count_in_byte(row[index_of(last)], 0, tail) +
+         raster::popcount(row.subspan(index_of(first + 1), index_of(last - first - 1)));
+}
+
+AreaCount::AreaCount(const Extent& picture, const Extent& cells) : picture_(picture), cells_(cells) {
+  for (std::int64_t column = 0; column <= cells.width; ++column) {
+    edges_.push_back(cell_begin(column, cells.width, picture.width));
+  }
+  ones_.assign(index_of(cells.area()), 0);
+}
+
+std::int64_t AreaCount::pixels_of(std::int64_t column, std::int64_t row) const noexcept {
+  const std::int64_t rows =
+      cell_begin(row + 1, cells_.height, picture_.height) - cell_begin(row, cells_.height, picture_.height);
+  return (edges_[index_of(column + 1)] - edges_[index_of(column)]) * rows;
+}
+
+Result<void> AreaCount::add(std::span<const std::byte> rows, std::int64_t count) {
+  const std::int64_t bytes = (picture_.width + 7) / 8;
+  if (count < 0 || count > picture_.height - next_row_ || rows.size() != index_of(count * bytes)) {
+    return Error{ErrorCode::bad_argument, "area count: " + std::to_string(count) + " rows in " +
+                                              std::to_string(rows.size()) + " bytes, " +
+                                              std::to_string(picture_.height - next_row_) + " rows are left"};
+  }
+  for (std::int64_t i = 0; i < count; ++i, ++next_row_) {
+    while (next_row_ >= cell_begin(cell_row_ + 1, cells_.height, picture_.height)) {
+      ++cell_row_;
+    }
+    const auto row = rows.subspan(index_of(i * bytes), index_of(bytes));
+    const auto ones = std::span(ones_).subspan(index_of(cell_row_ * cells_.width), index_of(cells_.width));
+    for (std::size_t column = 0; column < ones.size(); ++column) {
+      ones[column] += count_between(row, edges_[column], edges_[column + 1]);
+    }
+  }
+  return {};
+}
+
+}  // namespace gravure::report

@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <numeric>
+
+#include "gravure/report/report_data.hpp"
+
+namespace gravure::report {
+
+SeamSeries seam_series(const VerifyReport& verified, const Plan& plan, std::size_t most_points) {
+  SeamSeries series;
+  series.limit_um = verified.seam_limit_um;
+  const Rational steps = Rational(2 * Integer(plan.ab.increment));
+  if (plan.ab.increment > 0) {
+    series.bound_um_per_revolution = to_double(Rational(plan.rotary.circumference_um / steps));
+  }
+  const std::size_t rows = verified.seam.size();
+  const std::size_t points = std::min(rows, std::max<std::size_t>(2, most_points));
+  for (std::size_t i = 0; i < points; ++i) {
+    const SeamRow& row = verified.seam[points == 1 ? 0 : i * (rows - 1) / (points - 1)];
+    series.points.push_back({row.revolution, row.drift_um});
+  }
+  return series;
+}
+
+Relief relief_of(const LayerPictures& pictures, const Plan& plan, const std::optional<PulseRemoval>& removal) {
+  Relief relief;
+  relief.in_um = removal.has_value();
+  const Extent& cells = pictures.cells;
+  const Incidence incidence(plan);
+  const double pixel_um = to_double(plan.line.pixel_pitch_um);
+  const double line_um = to_double(plan.rotary.line_pitch_um);
+  const std::int64_t along = pictures.lines_are_rows ? cells.width : cells.height;
+  std::vector<double> per_pulse(static_cast<std::size_t>(along), 1.0);  // um, or pulses
+  for (std::int64_t column = 0; removal && column < along; ++column) {
+    const std::int64_t columns = image_columns(plan);
+    const std::int64_t middle = (cell_begin(column, along, columns) + cell_begin(column + 1, along, columns) - 1) / 2;
+    per_pulse[static_cast<std::size_t>(column)] =
+        removal->volume_um3(incidence.at_column_rad(middle)) / (pixel_um * line_um);
+  }
+  double removed = 0;
+  for (std::int64_t cell = 0; cell < cells.area(); ++cell) {
+    const auto i = static_cast<std::size_t>(cell);
+    const std::int64_t column = pictures.lines_are_rows ? cell % cells.width : cell / cells.width;
+    const double of_pixels = static_cast<double>(pictures.pulses[i]) * per_pulse[static_cast<std::size_t>(column)];
+    relief.cells.push_back(of_pixels / static_cast<double>(pictures.pixels[i]));
+    relief.deepest = std::max(relief.deepest, relief.cells.back());
+    removed += of_pixels;
+  }
+  relief.mean = removed / static_cast<double>(pictures.picture.area());
+  relief.seam.assign(pictures.seam_pulses.begin(), pictures.seam_pulses.end());
+  if (removal) {
+    const SeamPlace& place = pictures.seam_place;
+    const Extent extent = pictures.seam_extent();
+    const bool rows = pictures.lines_are_rows;
+    const PulseWindow window{extent.width, extent.height,       rows ? pixel_um : line_um, rows ? line_um : pixel_um,
+                             rows,         pictures.seam_pulses};
+    relief.seam = window_depth_um(window, *removal, incidence.at_column_rad(place.first_column + place.columns / 2));
+  }
+  for (const double depth : relief.seam) {
+    relief.seam_deepest = std::max(relief.seam_deepest, depth);
+  }
+  return relief;
+}
+
+}  // namespace gravure::report

@@ -1,0 +1,106 @@
+#include "gravure/formats/report_page.hpp"
+
+#include <array>
+
+#include "page_parts.hpp"
+
+namespace gravure {
+namespace {
+
+/// JSON inside a script element: no character can end it there.
+std::string script_safe(std::string_view json) {
+  std::string safe;
+  safe.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+/// What stands on the page where scripts are not run.
+std::string plain_verdict(const report::ReportData& data) {
+  const std::vector<std::string>& violations = data.verified.violations;
+  std::string text = violations.empty() ? "<p>Within limits.</p>" : "<p>NOT within limits:</p><ul>";
+  for (const std::string& violation : violations) {
+    text += "<li>" + escape_html(violation) + "</li>";
+  }
+  return text + (violations.empty() ? "" : "</ul>") + "<p>Charts and pictures need JavaScript.</p>";
+}
+
+}  // namespace
+
+std::string escape_html(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::array<unsigned, 3> three = {};
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t k = 0; k < count; ++k) {
+      three[k] = static_cast<unsigned char>(bytes[i + k]);
+    }
+    const unsigned all = three[0] << 16U | three[1] << 8U | three[2];
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= count ? kDigits[all >> (18 - 6 * k) & 0x3FU] : '=';
+    }
+  }
+  return text;
+}
+
+bool report_has_3d() noexcept {
+  return !page_parts::view3d().empty();
+}
+
+Result<std::string> report_page(const report::ReportData& data) {
+  GRAVURE_TRY(const std::string json, report_json(data));
+  const std::string title = data.header->plan.title.empty() ? data.program : data.header->plan.title;
+  std::string page = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  page += "<title>" + escape_html(title) + " - gravure report</title>\n";
+  page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  // Nothing is fetched, and a page that is taken somewhere else cannot be made to.
+  page +=
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
+      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n";
+  page += "<meta name=\"color-scheme\" content=\"light dark\">\n<style>\n";
+  page += page_parts::style();
+  page += "</style>\n</head>\n<body>\n<noscript>" + plain_verdict(data) + "</noscript>\n";
+  page += page_parts::body();
+  page += "<script type=\"application/json\" id=\"report-data\">" + script_safe(json) + "</script>\n<script>\n";
+  page += page_parts::view3d();
+  page += "</script>\n<script>\n";
+  page += page_parts::script();
+  page += "</script>\n</body>\n</html>\n";
+  return page;
+}
+
+}  // namespace gravure
