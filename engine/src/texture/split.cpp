@@ -60,7 +60,8 @@ std::vector<double> pulse_lengths_mm(const TexturePath& path, std::span<const Su
   }
   std::vector<double> lengths(targets.size());
   for (std::size_t i = 1; i < targets.size(); ++i) {
-    lengths[i] = lengths[i - 1] + (targets[i].position_mm - targets[i - 1].position_mm).norm();
+    const bool dark = !path.dark.empty() && path.dark[i];
+    lengths[i] = lengths[i - 1] + (dark ? 0 : (targets[i].position_mm - targets[i - 1].position_mm).norm());
   }
   return lengths;
 }

@@ -29,8 +29,10 @@ struct TexturePath {
   std::vector<Vector2> points_mm;
   double step_mm = 0;
   /// Length by which pulses are placed, at each point, the same at both ends of a dark step; never falls. Empty: the
-  /// length of the path on the surface, lit all along.
+  /// length of the path on the surface, but for steps that are dark.
   std::vector<double> pulse_mm = {};
+  /// True where the step to a point is dark; empty: no step is.
+  std::vector<bool> dark = {};
 };
 
 /// TexturePath::pulse_mm, or what stands for it where it is empty; `targets` are the points on the surface.
