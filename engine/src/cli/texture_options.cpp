@@ -32,6 +32,8 @@ void add_texture_options(CLI::App& verb, TextureOptions& options) {
       ->check(integer_from(1, kMostHilbertOrder));
   add_length(verb, "--size-mm", options.size_mm, 1e6, "Side of the square of that curve")->capture_default_str();
   verb.add_option("--path", options.path, "Path from a file: CSV with x_mm, y_mm, a corner a line");
+  verb.add_option("--svg", options.svg, "Path from the strokes of an SVG drawing, dark between them");
+  add_length(verb, "--tolerance-um", options.tolerance_um, 1e6, "How far its curves may be cut")->capture_default_str();
   verb.add_option("--bitmap", options.bitmap, "Picture as lines to and fro, a pulse above every pixel that fires");
   add_length(verb, "--pitch-um", options.pitch_um, 1e9, "Its pixels along the lines, in the plane");
   add_length(verb, "--line-pitch-um", options.line_pitch_um, 1e9, "Its lines (default: as the pixels)");
@@ -42,7 +44,7 @@ void add_texture_options(CLI::App& verb, TextureOptions& options) {
   verb.add_option("--threshold", options.threshold, "Grey picture: a sample of so much or more is white")
       ->check(integer_from(0, 65535));
   add_length(verb, "--step-um", options.step_um, 1e9,
-             "Distance of the points along --path; at most that along --bitmap (default 100)");
+             "Distance of the points along --path and --svg; at most that along --bitmap (default 100)");
 }
 
 void add_split_options(CLI::App& verb, SplitOptions& options, const std::string& without_sigma) {

@@ -45,6 +45,8 @@ struct TextureOptions {
   int hilbert_order = 0;
   double size_mm = 40;
   std::string path;
+  std::string svg;
+  double tolerance_um = 1;
   std::string bitmap;
   std::optional<double> pitch_um;
   std::optional<double> line_pitch_um;

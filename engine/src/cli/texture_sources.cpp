@@ -9,10 +9,12 @@
 #include "gravure/core/file_output.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/points.hpp"
+#include "gravure/formats/svg.hpp"
 #include "gravure/pipeline/layer_reader.hpp"
 #include "gravure/texture/height_field.hpp"
 #include "gravure/texture/mesh_surface.hpp"
 #include "gravure/texture/planar_path.hpp"
+#include "gravure/texture/stroke_path.hpp"
 #include "texture_options.hpp"
 
 namespace gravure::cli {
@@ -109,6 +111,26 @@ texture::PictureGrid grid_of(const TextureOptions& options, const LayerStack& st
           .step_mm = options.step_um.value_or(kPictureStep_um) / kUmPerMm};
 }
 
+Result<texture::TexturePath> drawing_path_of(const TextureOptions& options) {
+  if (!options.step_um) {
+    return Error{ErrorCode::bad_argument, "--step-um is missing: how far apart the points of the path are to be taken"};
+  }
+  GRAVURE_TRY(const std::string text, read_file(options.svg, kMostPathBytes));
+  GRAVURE_TRY(const std::vector<SvgStroke> drawing, parse_svg(text, options.svg, options.tolerance_um / kUmPerMm));
+  std::vector<std::vector<Vector2>> strokes;
+  for (const SvgStroke& each : drawing) {
+    std::vector<Vector2>& stroke = strokes.emplace_back();
+    for (const auto& [x, y] : each) {
+      stroke.emplace_back(x, y);
+    }
+  }
+  auto path = texture::stroke_path(strokes, *options.step_um / kUmPerMm, kMostPoints);
+  if (!path) {
+    return named(options.svg, path.error());
+  }
+  return path;
+}
+
 Result<texture::TexturePath> file_path_of(const TextureOptions& options) {
   if (!options.step_um) {
     return Error{ErrorCode::bad_argument, "--step-um is missing: how far apart the points of the path are to be taken"};
@@ -128,7 +150,7 @@ Result<texture::TexturePath> file_path_of(const TextureOptions& options) {
 
 std::vector<std::string> inputs_of(const TextureOptions& options) {
   std::vector<std::string> inputs;
-  for (const std::string* each : {&options.path, &options.height_field, &options.mesh, &options.bitmap}) {
+  for (const std::string* each : {&options.path, &options.svg, &options.height_field, &options.mesh, &options.bitmap}) {
     if (!each->empty()) {
       inputs.push_back(*each);
     }
@@ -174,14 +196,17 @@ Result<PathPulses> picture_pulses_of(const TextureOptions& options) {
 
 Result<texture::TexturePath> path_of(const TextureOptions& options) {
   const int given = static_cast<int>(options.hilbert_order != 0) + static_cast<int>(!options.path.empty()) +
-                    static_cast<int>(!options.bitmap.empty());
+                    static_cast<int>(!options.svg.empty()) + static_cast<int>(!options.bitmap.empty());
   if (given != 1) {
     return Error{ErrorCode::bad_argument,
-                 "give the path as one of --hilbert-order N, --path FILE.csv and --bitmap FILE"};
+                 "give the path as one of --hilbert-order N, --path FILE.csv, --svg FILE and --bitmap FILE"};
   }
   if (!options.bitmap.empty()) {
     GRAVURE_TRY(const texture::PictureGrid grid, picture_grid_of(options));
     return texture::picture_path(grid, kMostPoints);
+  }
+  if (!options.svg.empty()) {
+    return drawing_path_of(options);
   }
   if (!options.path.empty()) {
     return file_path_of(options);
