@@ -10,6 +10,7 @@
 #include "gravure/texture/split.hpp"
 #include "program_files.hpp"
 #include "texture_options.hpp"
+#include "texture_plan_command.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -157,6 +158,7 @@ void add_texture(CLI::App& app, Command& command) {
       app.add_subcommand("texture", "Paths on freeform surfaces with five stages and the galvo at once");
   texture->require_subcommand(1);
   add_decompose(*texture, command);
+  add_texture_plan(*texture, command);
   add_texture_compile(*texture, command);
 }
 

@@ -18,7 +18,7 @@ double smoothing_s(const PathTimingRequest& request, const PathRuns& path) {
     return request.smoothing_s;
   }
   constexpr double kLeast_s = 0.005;
-  constexpr double kMost_s = 0.04;
+  constexpr double kMost_s = 0.06;
   const double point_s =
       static_cast<double>(path.periods()) * path.period_s() / static_cast<double>(request.targets.size() - 1);
   return std::clamp(request.sigma_points * point_s / 4, kLeast_s, kMost_s);

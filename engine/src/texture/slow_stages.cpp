@@ -160,7 +160,7 @@ SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const
     const Need need = need_of(limits, rates(state, where));
     if (need.factor > kAllowed) {
       slow.needed = true;
-      needs.add(period - 1.5 * cell, period + 1.5 * cell, need.factor * kMore);
+      needs.add(period - cell, period + cell, need.factor * kMore);
       if (need.factor > worst) {
         worst = need.factor;
         slow.point = where.place.index;
@@ -172,7 +172,7 @@ SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const
     period += std::clamp(half_point, cell / 64, cell / 8);
   }
   if (slow.needed) {
-    const std::vector<double>& factors = needs.spread(2 * cell);
+    const std::vector<double>& factors = needs.spread(cell);
     for (std::size_t r = 0; r < factors.size(); ++r) {
       path.runs()[r].stretch *= factors[r];
     }

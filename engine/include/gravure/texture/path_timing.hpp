@@ -23,7 +23,7 @@ struct PathTimingRequest {
   Stops stops = Stops::corners;
   double servo_s = 50e-6;
   /// The stages' place along the path is the texture's, averaged over a window of which this is the standard deviation.
-  /// 0: a quarter of the time that `sigma_points` take, but from 5 to 40 ms.
+  /// 0: a quarter of the time that `sigma_points` take, but from 5 to 60 ms.
   double smoothing_s = 0;
   double sigma_points = 0;  ///< of the split, in points; what the stages have been smoothed by already
 };

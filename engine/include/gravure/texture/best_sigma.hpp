@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "gravure/texture/path_timing.hpp"
+#include "gravure/texture/split.hpp"
+#include "gravure/texture/splitter.hpp"
+
+namespace gravure::texture {
+
+/// What motion along a path has to keep to.
+struct PathMachine {
+  kinematics::Machine machine;  ///< as kinematics::xyzac_machine() makes it
+  SevenLimits limits;
+  Stops stops = Stops::corners;
+  double servo_s = 50e-6;
+};
+
+/// A split with the axes and times that follow from it.
+struct TimedSplit {
+  Split split;
+  std::vector<SevenAxes> axes;
+  std::vector<double> pulse_mm;
+  TimedPath timed;
+  double fastest_s = 0;  ///< of all sigmas that were looked at
+  int tries = 0;         ///< sigmas that were timed
+  /// For time_seven_axes() and prove_seven_axes(); refers to this.
+  PathTimingRequest request(const PathMachine& machine, const TexturePath& path) const;
+};
+
+/// Times a split that has been made. Errors as seven_axes(), rotary_table() and time_seven_axes().
+Result<TimedSplit> time_split(Split split, const TexturePath& path, const PathMachine& machine,
+                              const CancelToken& cancel);
+
+/// The better rule: the smallest sigma whose motion takes at most `share` longer than the fastest, because below some
+/// sigma the galvo sets the time and a wider one only costs focus and incidence. Looks from the sigma of the published
+/// rule down by halves until the share is exceeded, then twice between. The limits hold as in that rule; a splitter
+/// that keeps to them itself is run once.
+Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surface, const TexturePath& path,
+                                 const DeviationLimits& limits, const PathMachine& machine, double share,
+                                 const CancelToken& cancel);
+
+}  // namespace gravure::texture

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "verb.hpp"
+
+namespace gravure::cli {
+
+/// `gravure texture plan`.
+void add_texture_plan(CLI::App& texture, Command& command);
+
+}  // namespace gravure::cli

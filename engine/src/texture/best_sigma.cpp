@@ -1,0 +1,96 @@
+#include "gravure/texture/best_sigma.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gravure::texture {
+namespace {
+
+bool within(const DeviationSummary& most, const DeviationLimits& limits) {
+  return violations(most, limits).empty();
+}
+
+}  // namespace
+
+PathTimingRequest TimedSplit::request(const PathMachine& machine, const TexturePath& path) const {
+  PathTimingRequest request;
+  request.targets = split.targets;
+  request.axes = axes;
+  request.pulse_mm = pulse_mm;
+  request.limits = machine.limits;
+  request.stops = machine.stops;
+  request.servo_s = machine.servo_s;
+  request.sigma_points = split.sigma_mm / path.step_mm;
+  const Result<RotaryTable> table = rotary_table(machine.machine);
+  if (table) {
+    request.table = table.value();
+  }
+  return request;
+}
+
+Result<TimedSplit> time_split(Split split, const TexturePath& path, const PathMachine& machine,
+                              const CancelToken& cancel) {
+  TimedSplit timed;
+  timed.split = std::move(split);
+  GRAVURE_CHECK(rotary_table(machine.machine));
+  GRAVURE_TRY(timed.axes, seven_axes(machine.machine, timed.split.targets, timed.split.stages));
+  timed.pulse_mm = pulse_lengths_mm(path, timed.split.targets);
+  GRAVURE_TRY(timed.timed, time_seven_axes(timed.request(machine, path), cancel));
+  timed.fastest_s = timed.timed.time_s;
+  timed.tries = 1;
+  return timed;
+}
+
+Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surface, const TexturePath& path,
+                                 const DeviationLimits& limits, const PathMachine& machine, double share,
+                                 const CancelToken& cancel) {
+  if (!(share >= 0) || !std::isfinite(share)) {
+    return Error{ErrorCode::out_of_range, fmt::format("share of the time {}: must be 0 or more", share)};
+  }
+  GRAVURE_TRY(Split widest, split_by_published_rule(splitter, surface, path, limits, cancel));
+  const int splits = widest.tries;
+  GRAVURE_TRY(TimedSplit best, time_split(std::move(widest), path, machine, cancel));
+  if (splitter.keeps_limits()) {
+    return best;
+  }
+  double fastest_s = best.timed.time_s;
+  int tries = 1;
+  double good_mm = best.split.sigma_mm;
+  double bad_mm = 0;
+  const auto look = [&](double sigma_mm) -> Result<bool> {
+    GRAVURE_TRY(Split split, split_path(splitter, surface, path, limits, sigma_mm, cancel));
+    if (!within(split.most, limits)) {
+      return false;
+    }
+    GRAVURE_TRY(TimedSplit timed, time_split(std::move(split), path, machine, cancel));
+    ++tries;
+    fastest_s = std::min(fastest_s, timed.timed.time_s);
+    if (timed.timed.time_s > fastest_s * (1 + share)) {
+      return false;
+    }
+    best = std::move(timed);
+    return true;
+  };
+  while (good_mm / 2 >= path.step_mm) {
+    GRAVURE_TRY(const bool good, look(good_mm / 2));
+    if (!good) {
+      bad_mm = good_mm / 2;
+      break;
+    }
+    good_mm /= 2;
+  }
+  constexpr int kBetween = 2;
+  for (int k = 0; k < kBetween && bad_mm > 0; ++k) {
+    const double middle_mm = std::sqrt(good_mm * bad_mm);
+    GRAVURE_TRY(const bool good, look(middle_mm));
+    (good ? good_mm : bad_mm) = middle_mm;
+  }
+  best.fastest_s = fastest_s;
+  best.tries = tries;
+  best.split.tries = splits;
+  return best;
+}
+
+}  // namespace gravure::texture

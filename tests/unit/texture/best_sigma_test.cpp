@@ -1,0 +1,39 @@
+#include "gravure/texture/best_sigma.hpp"
+
+#include <gtest/gtest.h>
+
+#include "gravure/kinematics/machines.hpp"
+#include "published_surface.hpp"
+
+namespace gravure::texture {
+namespace {
+
+PathMachine machine_of_a() {
+  return {kinematics::xyzac_machine(kinematics::XyzacSigns::texturing, Vector3::Zero(), {}), published_limits(),
+          Stops::points, 50e-6};
+}
+
+/// On a quarter of the published curve: three times less focus offset for less than 1 % of the time.
+TEST(SplitByTime, CutsTheFocusOffsetForHardlyAnyTime) {
+  const auto surface = test::published_surface();
+  const TexturePath path{hilbert_curve(7, 20).value(), 20.0 / 127};
+  const auto splitter = make_splitter(SplitMethod::gaussian, {.cut = 4});
+  const auto wide = split_by_published_rule(*splitter, *surface, path, {}, {});
+  ASSERT_TRUE(wide);
+  const auto published = time_split(wide.value(), path, machine_of_a(), {});
+  const auto best = split_by_time(*splitter, *surface, path, {}, machine_of_a(), 0.005, {});
+  ASSERT_TRUE(published && best);
+  EXPECT_LE(best.value().timed.time_s, 1.005 * best.value().fastest_s);
+  EXPECT_LT(best.value().timed.time_s, 1.01 * published.value().timed.time_s);
+  EXPECT_LT(3 * best.value().split.most.max_focus_mm, published.value().split.most.max_focus_mm);
+}
+
+TEST(SplitByTime, RefusesAShareThatIsNone) {
+  const auto splitter = make_splitter(SplitMethod::gaussian, {});
+  const auto split = split_by_time(*splitter, *test::published_surface(), {hilbert_curve(2, 1).value(), 1.0 / 3}, {},
+                                   machine_of_a(), -1, {});
+  EXPECT_EQ(split.error().code, ErrorCode::out_of_range);
+}
+
+}  // namespace
+}  // namespace gravure::texture
