@@ -83,14 +83,14 @@ class HeaderReader {
       const std::string_view word = words.next();
       return to_count(word, value) && value < kMostPoints
                  ? Result<void>()
-                 : wrong(std::string(key) + " " + quoted(word) + ": must be an integer from 0 to 2147483647");
+                 : wrong(std::string(key) + " " + in_quotes(word) + ": must be an integer from 0 to 2147483647");
     }
     if (key == "DATA") {
       return data(words.next());
     }
     return key == "VERSION" || key == "VIEWPOINT"
                ? Result<void>()
-               : wrong(quoted(key) +
+               : wrong(in_quotes(key) +
                        ": must be VERSION, FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, VIEWPOINT, POINTS "
                        "or DATA");
   }
@@ -117,7 +117,7 @@ class HeaderReader {
         good = to_count(word, value) && value <= kMostCount;
       }
       if (!good) {
-        return wrong(std::string(key) + " " + quoted(word) + " of field " + quoted(field.name) + ": must be " +
+        return wrong(std::string(key) + " " + in_quotes(word) + " of field " + in_quotes(field.name) + ": must be " +
                      (key == "TYPE" ? "I, U or F" : "an integer up to " + std::to_string(kMostCount)));
       }
     }
@@ -126,7 +126,7 @@ class HeaderReader {
 
   Result<void> data(std::string_view word) {
     if (word != "ascii" && word != "binary" && word != "binary_compressed") {
-      return wrong("DATA " + quoted(word) + ": must be ascii, binary or binary_compressed");
+      return wrong("DATA " + in_quotes(word) + ": must be ascii, binary or binary_compressed");
     }
     header_.data = word == "ascii" ? PcdData::ascii : word == "binary" ? PcdData::binary : PcdData::compressed;
     return {};
@@ -139,7 +139,7 @@ class HeaderReader {
       header_.point_bytes += field.size * field.count;
       header_.point_values += field.count;
       if (!scalar_type(field)) {
-        return wrong("field " + quoted(field.name) + ": TYPE " + quoted({&field.type, 1}) + " of SIZE " +
+        return wrong("field " + in_quotes(field.name) + ": TYPE " + in_quotes({&field.type, 1}) + " of SIZE " +
                      std::to_string(field.size) + ": must be I or U of 1, 2, 4 or 8 bytes, or F of 4 or 8");
       }
     }
@@ -211,7 +211,7 @@ Result<PointFile> read_ascii(const PcdHeader& header, const Columns& columns, st
       const std::string_view word = words.next();
       if (!to_number(word, value)) {
         return bad_line(name, words.line(),
-                        (word.empty() ? "the file ends" : quoted(word) + " is no number") + " in point " +
+                        (word.empty() ? "the file ends" : in_quotes(word) + " is no number") + " in point " +
                             std::to_string(i) + " of " + std::to_string(header.points));
       }
     }

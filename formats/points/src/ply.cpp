@@ -24,7 +24,7 @@ class Values {
       const std::string_view word = words_.next();
       return to_number(word, value)
                  ? Result<double>(value)
-                 : wrong(word.empty() ? "the file ends" : quoted(word) + " is no number", element, row, property);
+                 : wrong(word.empty() ? "the file ends" : in_quotes(word) + " is no number", element, row, property);
     }
     const std::size_t size = bytes_of(type);
     if (bytes_.size() - at_ < size) {
@@ -37,7 +37,7 @@ class Values {
 
   Error wrong(const std::string& what, const PlyElement& element, std::uint64_t row,
               const std::string& property) const {
-    const std::string where = what + ": must be " + quoted(property) + " of " + quoted(element.name) + " " +
+    const std::string where = what + ": must be " + in_quotes(property) + " of " + in_quotes(element.name) + " " +
                               std::to_string(row) + " of " + std::to_string(element.count);
     return format_ == PlyFormat::ascii ? bad_line(name_, words_.line(), where) : bad_byte(name_, at_, where);
   }

@@ -58,7 +58,7 @@ class HeaderReader {
       } else if (key == "property") {
         GRAVURE_CHECK(property(words));
       } else if (!key.empty() && key != "comment" && key != "obj_info") {
-        return wrong(quoted(key) + ": must be format, element, property, comment, obj_info or end_header");
+        return wrong(in_quotes(key) + ": must be format, element, property, comment, obj_info or end_header");
       }
     }
     return wrong("the file ends before end_header");
@@ -80,10 +80,10 @@ class HeaderReader {
     } else if (word == "binary_big_endian") {
       header_.format = PlyFormat::big_endian;
     } else {
-      return wrong("format " + quoted(word) + ": must be ascii, binary_little_endian or binary_big_endian");
+      return wrong("format " + in_quotes(word) + ": must be ascii, binary_little_endian or binary_big_endian");
     }
     const std::string_view version = words.next();
-    return version == "1.0" ? Result<void>() : wrong("version " + quoted(version) + ": must be 1.0");
+    return version == "1.0" ? Result<void>() : wrong("version " + in_quotes(version) + ": must be 1.0");
   }
 
   Result<void> element(TextWords& words) {
@@ -91,7 +91,7 @@ class HeaderReader {
     element.name = words.next();
     const std::string_view count = words.next();
     if (element.name.empty() || !to_count(count, element.count)) {
-      return wrong("element " + quoted(element.name) + " " + quoted(count) + ": must be a name and a count");
+      return wrong("element " + in_quotes(element.name) + " " + in_quotes(count) + ": must be a name and a count");
     }
     if (header_.elements.size() == kMostElements) {
       return wrong("more than " + std::to_string(kMostElements) + " elements");
@@ -107,14 +107,14 @@ class HeaderReader {
       const std::string_view count = words.next();
       property.count_type = scalar_type(count);
       if (!property.count_type || !is_integer(*property.count_type)) {
-        return wrong("length of list " + quoted(count) + ": must be an integer type as uchar or int");
+        return wrong("length of list " + in_quotes(count) + ": must be an integer type as uchar or int");
       }
       type = words.next();
     }
     const auto known = scalar_type(type);
     property.name = words.next();
     if (!known || property.name.empty()) {
-      return wrong("property " + quoted(type) + " " + quoted(property.name) +
+      return wrong("property " + in_quotes(type) + " " + in_quotes(property.name) +
                    ": must be a type (char uchar short ushort int uint float double) and a name");
     }
     property.type = *known;
@@ -135,7 +135,7 @@ class HeaderReader {
         least += header_.format == PlyFormat::ascii ? 2 : bytes_of(property.count_type.value_or(property.type));
       }
       if (element.count > 0 && (least == 0 || element.count > left / least)) {
-        return wrong("element " + quoted(element.name) + " " + std::to_string(element.count) +
+        return wrong("element " + in_quotes(element.name) + " " + std::to_string(element.count) +
                      (least == 0 ? ": has no properties"
                                  : ": does not fit into the " + std::to_string(rest_.size()) +
                                        " bytes after the header; is the file cut?"));

@@ -60,7 +60,7 @@ bool to_count(std::string_view word, std::uint64_t& value) {
   return error == std::errc{} && end == word.data() + word.size() && !word.empty();
 }
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
   std::string text(word.substr(0, 40));
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }, '?');

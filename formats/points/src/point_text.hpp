@@ -33,7 +33,7 @@ bool to_number(std::string_view word, double& value);
 bool to_count(std::string_view word, std::uint64_t& value);
 
 /// Short, in quotes, and nothing in it that a terminal would obey.
-std::string quoted(std::string_view word);
+std::string in_quotes(std::string_view word);
 
 /// "name: line 3: what"
 Error bad_line(const std::string& name, std::int64_t line, const std::string& what);

@@ -98,7 +98,8 @@ class AsciiReader {
 
  private:
   Error wrong(std::string_view word, const std::string& wanted) const {
-    return bad_line(name_, words_.line(), (word.empty() ? "the file ends here" : quoted(word)) + ": must be " + wanted);
+    return bad_line(name_, words_.line(),
+                    (word.empty() ? "the file ends here" : in_quotes(word)) + ": must be " + wanted);
   }
   Result<void> expect(std::string_view wanted) {
     const std::string_view word = words_.next();
