@@ -429,6 +429,12 @@ Result<void> check_rtl_lines(const EmulateOptions& options, const Plan& plan, Li
 Result<int> run_program(const EmulateOptions& options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite({{"--edges", options.edges_path}, {"--vcd", options.vcd_path}}, {options.program}));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
+  if (program->header().plan.path) {
+    return Error{ErrorCode::bad_argument,
+                 options.program +
+                     ": a program that follows a path has no A-B axis to emulate; verify runs its lines and "
+                     "judges where the light lands"};
+  }
   const Plan& plan = program->header().plan;
   const std::int64_t per_revolution = plan.rotary.lines_per_revolution;
   Run run;

@@ -49,8 +49,8 @@ Json json_of(const ProgramHeader& header) {
 }
 
 std::string text_of(const ProgramHeader& header, const std::string& path) {
-  std::string text =
-      fmt::format("program   {} (format {}), made from {}\n", path, header.format_version, header.job_path);
+  std::string text = fmt::format("program   {} (format {}){}\n", path, header.format_version,
+                                 header.job_path.empty() ? std::string() : ", made from " + header.job_path);
   text += plan_text(header.plan);
   if (!header.set_points.empty()) {
     text += fmt::format("scanner   {} set-points a line, for {} kinds of lines\n", header.set_points[0].u_counts.size(),

@@ -116,8 +116,11 @@ ResumeOffset resume_offset(const Plan& plan, const BoardRun& run, std::int64_t l
   const std::int64_t revolutions = line / per_revolution - run.first_revolution;
   ResumeOffset offset;
   offset.lines_before = line % per_revolution;
-  offset.axis_um = um_of(counts_lost(plan, plan.ab, plan.rotary.edges_per_revolution, revolutions, offset.lines_before),
-                         plan.ab, plan.rotary.edges_per_revolution, plan.rotary.circumference_um);
+  if (!plan.path) {  // where an A-B signal turns an axis
+    offset.axis_um =
+        um_of(counts_lost(plan, plan.ab, plan.rotary.edges_per_revolution, revolutions, offset.lines_before), plan.ab,
+              plan.rotary.edges_per_revolution, plan.rotary.circumference_um);
+  }
   if (plan.carriage) {
     const CarriagePlan& carriage = *plan.carriage;
     offset.carriage_um =
