@@ -11,7 +11,7 @@
 namespace gravure::cli {
 
 /// The names that open_device() takes, for help texts and errors.
-inline constexpr const char* kDeviceNames = "usb[:SERIAL], emulated:DIR[,key=value...] or replay:FILE";
+inline constexpr const char* kDeviceNames = "usb[:SERIAL], emulated[:DIR[,key=value...]] or replay:FILE";
 
 /// A board that this process alone uses.
 struct OpenDevice {

@@ -266,6 +266,9 @@ void add_run(CLI::App& app, Command& command) {
     options->run.resume.uncertain =
         options->uncertain == "skip" ? session::UncertainPolicy::skip : session::UncertainPolicy::repeat;
     options->run.memory_bytes = command.memory_bytes();
+    if (options->device == "emulated") {
+      options->device = "emulated:" + options->program + ".board";
+    }
     command.run = [&command, options] { return run(*options, command); };
   });
 }
