@@ -40,7 +40,17 @@ void* operator new(std::size_t size) {
 void* operator new[](std::size_t size) {
   return take(size);
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {  // std::stable_sort asks for room so
+  try {
+    return take(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 void operator delete(void* block) noexcept {
+  give_back(block);
+}
+void operator delete(void* block, const std::nothrow_t&) noexcept {
   give_back(block);
 }
 void operator delete[](void* block) noexcept {
