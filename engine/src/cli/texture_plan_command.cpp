@@ -9,6 +9,7 @@
 #include "gravure/kinematics/machines.hpp"
 #include "gravure/texture/best_sigma.hpp"
 #include "program_files.hpp"
+#include "texture_following.hpp"
 #include "texture_options.hpp"
 
 namespace gravure::cli {
@@ -26,22 +27,15 @@ struct Options {
   std::string stops;
   double servo_us = 50;
   std::vector<std::string> limits;
+  ServoOptions servos;
   std::string trajectory;
   std::int64_t every = 20;
 };
 
 /// "X=100,200,300" into the limits.
 Result<void> set_limit(const std::string& text, texture::SevenLimits& limits) {
-  const std::string form = "AXIS=SPEED,ACCELERATION,JERK";
-  const auto axis = std::find(kPathAxes.begin(), kPathAxes.end(), text.substr(0, text.find('=')));
-  if (text.find('=') == std::string::npos || axis == kPathAxes.end()) {
-    return Error{ErrorCode::bad_argument, fmt::format("--limit {}: must be {} with X, Y, Z, A, C, U or V", text, form)};
-  }
-  GRAVURE_TRY(const std::vector<double> numbers, numbers_of("--limit", text.substr(text.find('=') + 1), form));
-  if (numbers.size() != 3) {
-    return Error{ErrorCode::bad_argument, fmt::format("--limit {}: must be {}, three numbers", text, form)};
-  }
-  limits[static_cast<std::size_t>(axis - kPathAxes.begin())] = {numbers[0], numbers[1], numbers[2]};
+  GRAVURE_TRY(const AxisSetting setting, axis_setting("--limit", text, "AXIS=SPEED,ACCELERATION,JERK"));
+  limits[setting.axis] = {setting.numbers[0], setting.numbers[1], setting.numbers[2]};
   return {};
 }
 
@@ -108,6 +102,7 @@ Result<void> write_trajectory(const Options& options, const PathMotion& motion) 
 struct Outcome {
   texture::ProvenPath seven;
   texture::TimedPath five;
+  Following following;
   std::vector<std::string> violations;
   double ratio() const { return five.time_s / seven.path.time_s; }
 };
@@ -117,13 +112,22 @@ double rounded(double value) {
   return std::round(value * kDigits) / kDigits + 0.0;
 }
 
-Json limits_json(const std::vector<texture::LimitUse>& uses, double servo_s) {
+/// Where a limit comes from: --limit of its axis, else published_limits().
+std::string_view limit_source(const Options& options, const texture::LimitUse& use) {
+  const bool stated = std::any_of(options.limits.begin(), options.limits.end(), [&use](const std::string& text) {
+    return text.substr(0, text.find('=')) == kPathAxes[use.axis];
+  });
+  return stated ? "stated" : texture::source_name(texture::source_of_published(use.axis, use.kind));
+}
+
+Json limits_json(const Options& options, const std::vector<texture::LimitUse>& uses, double servo_s) {
   Json limits = Json::array();
   for (const texture::LimitUse& use : uses) {
     limits.push_back({{"axis", kPathAxes[use.axis]},
                       {"kind", texture::limit_name(use.kind)},
                       {"most", rounded(use.most)},
                       {"allowed", use.allowed},
+                      {"source", limit_source(options, use)},
                       {"share", rounded(use.share())},
                       {"at_s", rounded(static_cast<double>(use.instant) * servo_s)}});
   }
@@ -143,7 +147,8 @@ void print_outcome(const Options& options, const texture::TexturePath& path, con
     json["slowed_runs"] = seven.slowed;
     json["instants"] = seven.motion->instants();
     json["servo_us"] = options.servo_us;
-    json["limits"] = limits_json(outcome.seven.uses, machine.servo_s);
+    json["limits"] = limits_json(options, outcome.seven.uses, machine.servo_s);
+    json["following_error"] = following_json(outcome.following, machine.servo_s);
     json["violations"] = outcome.violations;
     print_json(json);
     return;
@@ -157,10 +162,11 @@ void print_outcome(const Options& options, const texture::TexturePath& path, con
                       stops, seven.slowed, seven.runs);
   text += fmt::format("five axes     {:.3f} s, {:.3f} times as long\n", outcome.five.time_s, outcome.ratio());
   for (const texture::LimitUse& use : outcome.seven.uses) {
-    text += fmt::format("limit         {} {:<12} {:6.2f} % at {:.4f} s\n", kPathAxes[use.axis],
+    text += fmt::format("limit         {} {:<12} {:6.2f} % at {:.4f} s of {:.6g} ({})\n", kPathAxes[use.axis],
                         texture::limit_name(use.kind), use.share() * kPercent,
-                        static_cast<double>(use.instant) * machine.servo_s);
+                        static_cast<double>(use.instant) * machine.servo_s, use.allowed, limit_source(options, use));
   }
+  text += following_text(outcome.following, machine.servo_s);
   for (const std::string& violation : outcome.violations) {
     text += "violation: " + violation + "\n";
   }
@@ -171,16 +177,18 @@ Result<int> plan(const Options& options, const Command& command) {
   GRAVURE_CHECK(
       refuse_overwrite({{"--points", options.points}, {"--trajectory", options.trajectory}}, {options.texture.path}));
   GRAVURE_TRY(const texture::PathMachine machine, machine_of(options));
+  Outcome outcome;
+  GRAVURE_TRY(outcome.following, servos_of(options.servos));
   GRAVURE_TRY(const std::unique_ptr<texture::Surface> surface, surface_of(options.texture));
   GRAVURE_TRY(const texture::TexturePath path, path_of(options.texture));
   GRAVURE_TRY(const texture::TimedSplit timed, timed_split(options, *surface, path, machine));
-  Outcome outcome;
   texture::PathTimingRequest request = timed.request(machine, path);
   GRAVURE_TRY(outcome.seven, texture::prove_seven_axes(request, cancel_token()));
   GRAVURE_TRY(const std::vector<texture::SevenAxes> stages_alone,
               texture::seven_axes(machine.machine, timed.split.targets, timed.split.targets));
   request.axes = stages_alone;
   GRAVURE_TRY(outcome.five, texture::time_five_axes(request, cancel_token()));
+  GRAVURE_CHECK(predict(outcome.following, *outcome.seven.path.motion, machine));
   outcome.violations = texture::violations(timed.split.most, limits_of(options.split));
   for (const texture::LimitUse& use : texture::broken(outcome.seven.uses)) {
     outcome.violations.push_back(fmt::format("axis {}: {} {:.6g}, allowed {:.6g}, at {:.4f} s", kPathAxes[use.axis],
@@ -214,6 +222,7 @@ void add_texture_plan(CLI::App& texture, Command& command) {
       ->check(CLI::IsMember({"points", "corners"}));
   verb->add_option("--limit", options->limits,
                    "AXIS=SPEED,ACCELERATION,JERK of one axis, mm or rad per s, s^2, s^3; as often as needed");
+  add_servo_options(*verb, options->servos);
   add_length(*verb, "--servo-us", options->servo_us, 1e6, "Servo period")->capture_default_str();
   verb->add_option("--points", options->points, "CSV of every point, its stages' point, axes and deviations");
   verb->add_option("--trajectory", options->trajectory, "CSV of the set-points of all axes over time");

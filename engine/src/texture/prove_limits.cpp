@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gravure/core/path_expand.hpp"
+#include "motion_windows.hpp"
 
 namespace gravure::texture {
 namespace {
@@ -82,33 +83,32 @@ std::string_view limit_name(LimitKind kind) noexcept {
   return "jerk";
 }
 
+LimitSource source_of_published(std::size_t axis, LimitKind kind) noexcept {
+  const std::string_view name = kPathAxes[axis];
+  if (kind == LimitKind::speed || name == "Z") {
+    return LimitSource::assumed;
+  }
+  return name == "A" || name == "C" ? LimitSource::fitted : LimitSource::published;
+}
+
+std::string_view source_name(LimitSource source) noexcept {
+  switch (source) {
+    case LimitSource::published:
+      return "published";
+    case LimitSource::fitted:
+      return "fitted";
+    case LimitSource::assumed:
+      break;
+  }
+  return "assumed";
+}
+
 Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const SevenLimits& limits, double servo_s,
                                            const CancelToken& cancel, const LimitBreach& breach) {
-  constexpr std::int64_t kBlock = 16'384;
   Uses uses(limits, servo_s, breach);
-  const std::int64_t instants = motion.instants();
-  // The last three of the block before stand in front; at both ends of the motion the outermost is repeated.
-  std::vector<PathInstant> block(3);
-  for (std::int64_t first = 0; first < instants; first += kBlock) {
-    if (cancel.cancelled()) {
-      return Error{ErrorCode::cancelled, "stopped while limits were being checked"};
-    }
-    const std::int64_t size = std::min(kBlock, instants - first);
-    block.resize(3 + static_cast<std::size_t>(size));
-    GRAVURE_CHECK(motion.read(first, std::span(block).subspan(3)));
-    std::size_t from = 0;
-    if (first == 0) {
-      block[2] = block[3];
-      from = 2;
-    }
-    if (first + size == instants) {
-      block.push_back(block.back());
-    }
-    for (std::size_t k = from; k + 3 < block.size(); ++k) {
-      uses.look(std::span(block).subspan(k, 4), first + static_cast<std::int64_t>(k) - 2);
-    }
-    std::copy(block.end() - 3, block.end(), block.begin());
-  }
+  GRAVURE_CHECK(for_each_window(
+      motion, cancel, "stopped while limits were being checked",
+      [&uses](std::span<const PathInstant, 4> four, std::int64_t instant) { uses.look(four, instant); }));
   return uses.uses();
 }
 

@@ -16,6 +16,15 @@ namespace gravure::texture {
 enum class LimitKind : std::uint8_t { speed, acceleration, jerk };
 std::string_view limit_name(LimitKind kind) noexcept;
 
+/// Where a limit of published_limits() comes from.
+enum class LimitSource : std::uint8_t {
+  published,  ///< it follows from what [A] states
+  fitted,     ///< to the times that [A] states
+  assumed,    ///< [A] does not state it, and its times do not show it
+};
+LimitSource source_of_published(std::size_t axis, LimitKind kind) noexcept;
+std::string_view source_name(LimitSource source) noexcept;
+
 /// The most that a motion asks of one limit of one axis.
 struct LimitUse {
   std::size_t axis = 0;  ///< of kPathAxes
