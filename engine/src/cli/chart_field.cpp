@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "charts.hpp"
@@ -34,6 +35,23 @@ MarkRow mark_row(const ChartBase& base, const ChartOptions& options, std::int64_
   return made;
 }
 
+/// Lines run one way, so the scanner flies back over all of them: dark slots that are enough under its limits, by ramps
+/// that take the jerk limit at both ends and a flight at full speed between them, and a tenth more.
+std::int64_t fly_back_slots(const ChartBase& base, double width_mm) {
+  const ScannerPlan none;
+  const ScannerPlan& scanner = base.plan.scanner ? *base.plan.scanner : none;
+  if (!scanner.max_speed_mm_s || !scanner.max_acceleration_mm_s2) {
+    return 0;
+  }
+  const double speed = 1000 * to_double(base.plan.line.scan_speed_m_s);
+  const double most = to_double(*scanner.max_speed_mm_s);
+  const double acceleration = to_double(*scanner.max_acceleration_mm_s2);
+  const double jerk_s = scanner.max_jerk_mm_s3 ? acceleration / to_double(*scanner.max_jerk_mm_s3) : 0;
+  const double ramp_s = (speed + most) / acceleration + jerk_s;
+  const double flight_s = std::max(0.0, (width_mm + (speed - most) * ramp_s) / most);
+  return static_cast<std::int64_t>(std::ceil(1.1 * (2 * ramp_s + flight_s) * to_double(base.plan.clock.pulse_hz)));
+}
+
 }  // namespace
 
 Result<Chart> field_chart(const ChartBase& base, const ChartOptions& options) {
@@ -57,6 +75,8 @@ Result<Chart> field_chart(const ChartBase& base, const ChartOptions& options) {
   Chart chart;
   std::string csv = "u_order_mm,v_order_mm,x_mm,s_mm,cos_offset\n";
   std::string runs;
+  const std::int64_t turn_slots = std::max(base.plan.line.slots - base.plan.line.pixels,
+                                           fly_back_slots(base, static_cast<double>(width) * pitch_mm));
   for (std::int64_t row = 0; row < options.rows; ++row) {
     const MarkRow made = mark_row(base, options, row);
     ChartPicture picture(width, lines);
@@ -76,6 +96,7 @@ Result<Chart> field_chart(const ChartBase& base, const ChartOptions& options) {
                            "rotary",
                            "files = [\"" + layer + "\"]\nfires = \"white\"\n",
                            {{{"scanner", "bidirectional"}, "false"},
+                            {{"scanner", "turn_slots"}, std::to_string(turn_slots)},
                             {{"scanner", "field_mm"}, fmt::format("{}", base.field_mm)},
                             {{"scanner", "offset_deg"}, fmt::format("{:.6f}", made.offset_deg)}}}});
     runs += fmt::format("    gravure compile {0}.toml -o {0}.grv\n    gravure verify {0}.grv\n", made.name);

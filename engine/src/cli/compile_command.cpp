@@ -5,6 +5,7 @@
 
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
+#include "gravure/twin/unroll.hpp"
 #include "job_loader.hpp"
 #include "program_files.hpp"
 #include "verb.hpp"
@@ -81,8 +82,8 @@ Json json_of(const CompileOutcome& outcome, const std::string& output) {
       Integer(header.layer_of_revolution.size()) * header.plan.rotary.lines_per_revolution * header.plan.line.pixels;
   Json json = {{"program", output},
                {"revolutions", header.layer_of_revolution.size()},
-               {"layers", header.layers.size()},
-               {"stored_layers", stored_layers(header)},
+               {"layers", image_layers(header)},
+               {"different_revolutions", different_revolutions(header)},
                {"lines_per_revolution", header.plan.rotary.lines_per_revolution},
                {"fires", polarity_name(header.fires)},
                {"fired_pixels", json_integer(fired)},
@@ -99,11 +100,11 @@ Json json_of(const CompileOutcome& outcome, const std::string& output) {
 
 std::string text_of(const CompileOutcome& outcome, const std::string& output, double fired_percent) {
   const ProgramHeader& header = outcome.header;
-  const std::string of_all = header.shard ? fmt::format(", {} to {} of {},", header.shard->first, header.shard->end - 1,
+  const std::string of_all = header.shard ? fmt::format(", {} to {} of {}", header.shard->first, header.shard->end - 1,
                                                         header.plan.job.revolutions)
                                           : "";
-  return fmt::format("{}: {} {}{} from {} stored layers; {} fires, {:.2f} % of the pixels{}\n", output,
-                     header.layer_of_revolution.size(), turns_name(header.plan), of_all, stored_layers(header),
+  return fmt::format("{}: {} {}{} ({} different); {} fires, {:.2f} % of the pixels{}\n", output,
+                     header.layer_of_revolution.size(), turns_name(header.plan), of_all, different_revolutions(header),
                      polarity_name(header.fires), fired_percent, outcome.kept ? "; it was there already" : "");
 }
 

@@ -2,6 +2,7 @@
 
 #include "gravure/formats/grv.hpp"
 #include "gravure/raster/place.hpp"
+#include "gravure/twin/unroll.hpp"
 #include "program_files.hpp"
 #include "program_trajectory.hpp"
 #include "verb.hpp"
@@ -55,9 +56,13 @@ Result<int> run(const Options& options, const Command& command) {
   GRAVURE_CHECK(chunk.send(header, options.revolution, *device));
   const bool reverse = line_is_reverse(plan, options.revolution, options.line);
   if (command.json) {
+    const std::vector<std::int64_t> images = images_of_layers(header);
+    const Json layer = images.empty()
+                           ? Json(nullptr)
+                           : Json(images[header.layer_of_revolution[static_cast<std::size_t>(options.revolution)]]);
     print_json({{"revolution", options.revolution},
                 {"line", options.line},
-                {"layer", header.layer_of_revolution[static_cast<std::size_t>(options.revolution)]},
+                {"layer", layer},
                 {"direction", direction_name(reverse)},
                 {"first_slot", reverse ? plan.line.reverse_first_slot : plan.line.forward_first_slot},
                 {"slots", slots.text()}});

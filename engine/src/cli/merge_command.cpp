@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "gravure/twin/unroll.hpp"
 #include "program_files.hpp"
 #include "program_parts.hpp"
 #include "verb.hpp"
@@ -23,11 +24,11 @@ Result<int> run(const Options& options, const Command& command) {
     print_json({{"program", options.output},
                 {"shards", options.shards.size()},
                 {"revolutions", header.layer_of_revolution.size()},
-                {"layers", header.layers.size()},
-                {"stored_layers", stored_layers(header)}});
+                {"layers", image_layers(header)},
+                {"different_revolutions", different_revolutions(header)}});
   } else {
-    print(fmt::format("{}: {} {} from {} shards, {} stored layers\n", options.output, header.layer_of_revolution.size(),
-                      turns_name(header.plan), options.shards.size(), stored_layers(header)));
+    print(fmt::format("{}: {} {} ({} different) from {} shards\n", options.output, header.layer_of_revolution.size(),
+                      turns_name(header.plan), different_revolutions(header), options.shards.size()));
   }
   return kDone;
 }

@@ -134,7 +134,7 @@ LayerOrigin origin_of(const ProgramHeader& header, std::int64_t layer) {
   return depth_map ? LayerOrigin{0, layer} : LayerOrigin{static_cast<std::size_t>(layer), 0};
 }
 
-std::size_t stored_layers(const ProgramHeader& header) {
+std::size_t different_revolutions(const ProgramHeader& header) {
   const std::vector<std::uint32_t>& bits = header.bits_of_layer;
   return bits.empty() ? header.layers.size() : std::size_t{*std::max_element(bits.begin(), bits.end())} + 1;
 }

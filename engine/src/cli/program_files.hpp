@@ -52,8 +52,8 @@ struct OutputFile {
 /// to the same folder, or a link.
 Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs);
 
-/// How many layers of bits a program holds; layers that show the same picture share one.
-std::size_t stored_layers(const ProgramHeader& header);
+/// How many different revolutions a program holds: those that expose the same are stored once.
+std::size_t different_revolutions(const ProgramHeader& header);
 
 /// What a job counts: "revolutions", or "passes" in flat mode.
 const char* turns_name(const Plan& plan);

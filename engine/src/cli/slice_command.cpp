@@ -37,6 +37,8 @@ Result<LayerStack> stack_of(const Options& options, const ImageInfo& info) {
   stack.random_access = info.random_access;
   stack.fires = options.fires == "white" ? Fires::white : Fires::black;
   stack.levels = options.levels;
+  stack.depth_min_name = "--depth-min";
+  stack.depth_max_name = "--depth-max";
   if (!options.depth_min.empty()) {
     GRAVURE_TRY(stack.depth_min, decimal_option("--depth-min", options.depth_min));
   }

@@ -98,6 +98,7 @@ Result<LayerStack> picture_stack(const TextureOptions& options, const ImageOpene
   stack.random_access = info.random_access;
   stack.fires = options.fires == "white" ? Fires::white : Fires::black;
   stack.threshold = options.threshold;
+  stack.threshold_name = "--threshold";
   return stack;
 }
 

@@ -142,7 +142,8 @@ Result<int> run(const Options& options, const Command& command) {
     Json json = {{"picture", options.output}};
     if (options.revolution) {
       json["revolution"] = *options.revolution;
-      json["layer"] = header.layer_of_revolution[static_cast<std::size_t>(*options.revolution)];
+      json["layer"] =
+          images_of_layers(header)[header.layer_of_revolution[static_cast<std::size_t>(*options.revolution)]];
     } else {
       json["layer"] = *options.layer;
     }

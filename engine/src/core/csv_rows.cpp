@@ -8,6 +8,8 @@
 #include <iterator>
 #include <string>
 
+#include "gravure/core/byte_order_mark.hpp"
+
 namespace gravure {
 namespace {
 
@@ -82,10 +84,7 @@ std::string shown(std::string_view line) {
 Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
                            const std::function<void(std::span<const double>)>& row) {
   assert(columns.count <= kMostCsvColumns);
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) {
-    text.remove_prefix(kByteOrderMark.size());
-  }
+  text = without_byte_order_mark(text);
   bool heading_allowed = true;
   std::size_t rows = 0;
   for (std::size_t number = 1; !text.empty(); ++number) {

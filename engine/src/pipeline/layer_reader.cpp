@@ -294,7 +294,8 @@ Result<LayerReader::Limit> LayerReader::limit_of(const LayerInput& input) const 
     const std::int64_t limit = stack_.threshold.value_or(0);
     const bool integers = stack_.samples != SampleType::f32;
     if (integers && (limit < 0 || limit > integer_maximum(stack_.samples))) {
-      return Error{ErrorCode::out_of_range, "image.threshold = " + std::to_string(limit) + ": samples go from 0 to " +
+      return Error{ErrorCode::out_of_range, stack_.threshold_name + " = " + std::to_string(limit) +
+                                                ": samples go from 0 to " +
                                                 std::to_string(integer_maximum(stack_.samples))};
     }
     return Limit{integers ? static_cast<double>(limit) : float_limit(Rational(limit), raster::Where::at_least),
@@ -307,8 +308,8 @@ Result<LayerReader::Limit> LayerReader::limit_of(const LayerInput& input) const 
     std::swap(low, high);
   }
   if (low == high) {
-    return Error{ErrorCode::bad_argument, "image.depth_min = image.depth_max = " + to_decimal_string(low) +
-                                              ": a depth map needs two different ends"};
+    return Error{ErrorCode::bad_argument, stack_.depth_min_name + " = " + stack_.depth_max_name + " = " +
+                                              to_decimal_string(low) + ": a depth map needs two different ends"};
   }
   if (!integers) {
     const Rational at = low + (high - low) * Rational(2 * input.level + 1, 2 * stack_.levels);
@@ -317,8 +318,8 @@ Result<LayerReader::Limit> LayerReader::limit_of(const LayerInput& input) const 
   }
   for (const Rational& end : {low, high}) {
     if (denominator_of(end) != 1 || end < 0 || end > integer_maximum(stack_.samples)) {
-      return Error{ErrorCode::out_of_range, "image.depth_min, image.depth_max: " + to_decimal_string(end) +
-                                                " must be an integer from 0 to " +
+      return Error{ErrorCode::out_of_range, stack_.depth_min_name + ", " + stack_.depth_max_name + ": " +
+                                                to_decimal_string(end) + " must be an integer from 0 to " +
                                                 std::to_string(integer_maximum(stack_.samples)) + " for this map"};
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "gravure/core/byte_order_mark.hpp"
 #include "gravure/scan/field_grid.hpp"
 
 namespace gravure::scan {
@@ -67,7 +68,7 @@ class Lines {
 
 class Reader {
  public:
-  Reader(std::string_view text, std::string path) : lines_(text), path_(std::move(path)) {}
+  Reader(std::string_view text, std::string path) : lines_(without_byte_order_mark(text)), path_(std::move(path)) {}
 
   Result<FieldGrid> read() {
     if (!lines_.next() || lines_.line() != kFirstLine) {

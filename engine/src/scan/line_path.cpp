@@ -56,10 +56,11 @@ Result<void> check_speed(const LinePath& path, Direction direction, const LineTi
   const double middle = static_cast<double>(timing.first_slot(direction)) + static_cast<double>(timing.pixels) / 2;
   for (std::size_t axis = 0; most && axis < 2; ++axis) {
     const double speed = std::abs(state_of(path, direction, middle, axis).speed_mm_s);
-    if (speed > *most) {
+    constexpr double kRounding = 1e-9;  // a speed equal to its limit, taken from differences of places
+    if (speed > *most * (1 + kRounding)) {
       return Error{
           ErrorCode::out_of_range,
-          fmt::format("scan: {} moves at {} mm/s while a line is marked: faster than max_speed_mm_s = {}; take "
+          fmt::format("scan: {} moves at {:.9g} mm/s while a line is marked: faster than max_speed_mm_s = {}; take "
                       "a smaller pixel pitch or fewer pulses a second",
                       axis == 0 ? "U" : "V", speed, *most)};
     }
@@ -79,8 +80,8 @@ Result<void> check_marking_field(const LinePath& path, Direction direction) {
       if (from_centre > field_mm / 2) {  // no number: plan_turn() says so
         return Error{
             ErrorCode::out_of_range,
-            fmt::format("scan: while a line is marked {} comes {} mm from the centre: field_mm = {} allows {}; "
-                        "it takes a field of {} mm, fewer pixels or less offset_deg",
+            fmt::format("scan: while a line is marked {} comes {:.9g} mm from the centre: field_mm = {} allows {}; "
+                        "it takes a field of {:.9g} mm, fewer pixels or less offset_deg",
                         axis == 0 ? "U" : "V", from_centre, field_mm, field_mm / 2, 2 * from_centre)};
       }
     }
@@ -225,7 +226,7 @@ Result<void> LinePath::check_turn(Direction before) const {
       return Error{
           ErrorCode::out_of_range,
           fmt::format(
-              "scan: {} slots are left for the turn after {} lines: {} takes {} us at least, {} slots, from {:.6g} "
+              "scan: {} slots are left for the turn after {} lines: {} takes {:.9g} us at least, {} slots, from {:.6g} "
               "to {:.6g} mm/s under {}; make turn_slots {} or more",
               turn_slots(before), name_of(before), names[axis], turn.shortest_s * 1e6,
               std::max(1.0, std::ceil(turn.shortest_s / timing_.slot_s())), turn.start_mm_s, turn.end_mm_s,

@@ -164,7 +164,7 @@ Result<void> check_joint_speeds(const LineTiming& timing, const LineGeometry& ge
     const double speed = std::abs(geometry.per_slot[i]) / timing.slot_s();
     if (joint.limits.max_speed && speed > *joint.limits.max_speed) {
       return Error{ErrorCode::out_of_range,
-                   fmt::format("scan: joint {} moves at {} {}: its max_speed is {}; take fewer lines a second",
+                   fmt::format("scan: joint {} moves at {:.9g} {}: its max_speed is {:.9g}; take fewer lines a second",
                                joint.name, speed, joint.kind == kinematics::JointKind::prismatic ? "mm/s" : "rad/s",
                                *joint.limits.max_speed)};
     }

@@ -17,10 +17,11 @@ constexpr double kMostCount = 1 << 30;
 Result<std::int32_t> count_of(double position_mm, const char* axis, double resolution_mm) {
   const double count = std::round(position_mm / resolution_mm);
   if (!(std::abs(count) <= kMostCount)) {
-    return Error{ErrorCode::out_of_range,
-                 fmt::format("scan: set-point {} = {} mm: beyond {} counts of {} mm; take a larger field_mm, fewer "
-                             "pixels or a shorter turn",
-                             axis, position_mm, kMostCount, resolution_mm)};
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("scan: set-point {} = {:.9g} mm: beyond {} counts of {:.9g} mm; take a larger field_mm, fewer "
+                    "pixels or a shorter turn",
+                    axis, position_mm, kMostCount, resolution_mm)};
   }
   return static_cast<std::int32_t>(count);
 }

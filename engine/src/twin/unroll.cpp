@@ -1,7 +1,7 @@
 #include "gravure/twin/unroll.hpp"
 
 #include <algorithm>
-#include <set>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -147,11 +147,21 @@ std::int64_t image_layers(const ProgramHeader& header) {
   if (header.plan.carriage) {
     return header.plan.carriage->layers;
   }
-  std::set<std::pair<std::int64_t, std::int64_t>> images;
-  for (const StoredLayer& layer : header.layers) {
-    images.emplace(layer.source, layer.level);
+  const std::vector<std::int64_t> images = images_of_layers(header);
+  return images.empty() ? 0 : 1 + *std::max_element(images.begin(), images.end());
+}
+
+std::vector<std::int64_t> images_of_layers(const ProgramHeader& header) {
+  std::vector<std::int64_t> images;
+  if (header.plan.carriage) {
+    return images;
   }
-  return static_cast<std::int64_t>(images.size());
+  std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> known;  // source and level, as they are first shown
+  for (const StoredLayer& layer : header.layers) {
+    const auto next = static_cast<std::int64_t>(known.size());
+    images.push_back(known.try_emplace({layer.source, layer.level}, next).first->second);
+  }
+  return images;
 }
 
 Result<void> unroll(LineSource& program, const DeviceFactory& devices, std::int64_t revolution, const RowSink& rows,

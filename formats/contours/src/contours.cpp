@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include "contour_list.hpp"
+#include "gravure/core/byte_order_mark.hpp"
 #include "gravure/core/file_output.hpp"
 
 namespace gravure::formats {
 
 Result<ContourFile> parse_contours(std::string_view text, const std::string& path) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  const std::string_view plain = text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+  const std::string_view plain = without_byte_order_mark(text);
   const std::size_t first = plain.find_first_not_of(" \t\r\n");
   if (text.size() > kMaxContourBytes) {
     return Error{ErrorCode::bad_file, fmt::format("{}: {} bytes: must be at most {}; take several files", path,

@@ -55,6 +55,13 @@ bidirectional         = true      # every other line runs back
 bidirectional_offset_ticks = 0    # FPGA ticks by which lines running back are later; may be negative
 )";
 
+constexpr std::string_view kScanner =
+    R"(field_mm              = 20.0      # the square that the scanner reaches; a wider image is cut in bands
+max_speed_mm_s         = 20_000   # what it can follow; without these three lines and turns are not checked
+max_acceleration_mm_s2 = 40_000_000
+max_jerk_mm_s3         = 4_000_000_000_000
+)";
+
 constexpr std::string_view kField =
     R"(field_mm              = 0.3       # what the scanner reaches: the 0.512 mm of the images become two bands
 )";
@@ -131,9 +138,9 @@ std::string joined(std::initializer_list<std::string_view> parts) {
 std::string starter_job(Mode mode) {
   switch (mode) {
     case Mode::rotary:
-      return joined({kHead, kRotaryJob, kMachine, kRotary, kRotaryImage, kLimits});
+      return joined({kHead, kRotaryJob, kMachine, kScanner, kRotary, kRotaryImage, kLimits});
     case Mode::helical:
-      return joined({kHead, kHelicalJob, kMachine, kRotary, kCarriage, kHelicalImage, kLimits});
+      return joined({kHead, kHelicalJob, kMachine, kScanner, kRotary, kCarriage, kHelicalImage, kLimits});
     case Mode::flat:
       return joined({kHead, kFlatJob, kMachine, kField, kStage, kFlatImage, kLimits});
     case Mode::freeform:  // other files, other readers

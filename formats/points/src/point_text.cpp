@@ -42,11 +42,6 @@ std::string_view take_line(std::string_view& rest) {
   return line;
 }
 
-std::string_view without_byte_order_mark(std::string_view text) {
-  constexpr std::string_view kMark = "\xEF\xBB\xBF";
-  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
-}
-
 bool to_number(std::string_view word, double& value) {
   if (word.starts_with('+') && !word.starts_with("+-")) {
     word.remove_prefix(1);

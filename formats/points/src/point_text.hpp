@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "gravure/core/byte_order_mark.hpp"  // what takes lines passes over it
 #include "gravure/core/error.hpp"
 
 namespace gravure {
@@ -25,7 +26,6 @@ class TextWords {
 
 /// The next line without its end ("\n" or "\r\n"), taken off `rest`.
 std::string_view take_line(std::string_view& rest);
-std::string_view without_byte_order_mark(std::string_view text);
 
 /// False unless the whole word is a number: decimal, exponent, +, nan, inf.
 bool to_number(std::string_view word, double& value);

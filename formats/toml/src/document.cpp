@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "gravure/core/byte_order_mark.hpp"
+
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_FORMATTERS 0
@@ -30,16 +32,13 @@
 namespace gravure::toml_file {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 /// Finds the text of what toml++ locates by line and column (in characters, from 1), in constant time: a hostile file
 /// may have all its keys on one line.
 class SourceText {
  public:
   explicit SourceText(std::string_view text) : text_(text) {
-    const bool has_mark = text.substr(0, kByteOrderMark.size()) == kByteOrderMark;
     line_starts_.push_back(0);
-    for (std::size_t at = has_mark ? kByteOrderMark.size() : 0; at < text.size(); ++at) {
+    for (std::size_t at = byte_order_mark_bytes(text); at < text.size(); ++at) {
       if ((static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U) {
         continue;  // not the first byte of a character
       }

@@ -243,6 +243,9 @@ TEST(StarterJob, OfEveryModeParsesAndNeedsTheSameImages) {
       EXPECT_EQ(job.stage.interpolation_bits, 8);
       EXPECT_EQ(job.stage.max_ab_hz, 2'000'000);
       EXPECT_EQ(job.scanner.field_mm, ratio(3, 10));
+    } else {  // the scanner is described, so that plan, verify and report know where each pulse lands
+      EXPECT_EQ(job.scanner.field_mm, Rational(20));
+      EXPECT_TRUE(job.scanner.max_speed_mm_s && job.scanner.max_acceleration_mm_s2 && job.scanner.max_jerk_mm_s3);
     }
   }
 }

@@ -97,6 +97,13 @@ TEST(FieldGrid, TextMayHaveCommentsAndEmptyLines) {
   EXPECT_EQ(grid.value().errors[3].v_mm, 0.2);
 }
 
+TEST(FieldGrid, TextMayBeginWithAByteOrderMark) {
+  const auto grid = parse_field_grid("\xEF\xBB\xBF" + std::string(kSmall), "field.grid");
+  ASSERT_TRUE(grid) << grid.error().message;
+  EXPECT_EQ(field_grid_text(grid.value()), field_grid_text(parse_field_grid(kSmall, "field.grid").value()));
+  EXPECT_FALSE(parse_field_grid("\xEF\xBB" + std::string(kSmall), "field.grid")) << "half a mark is none";
+}
+
 TEST(FieldGrid, FlawsOfTheTextAreNamedByLine) {
   struct Flaw {
     const char* from;

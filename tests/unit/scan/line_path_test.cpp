@@ -200,7 +200,9 @@ TEST(LinePath, RefusesWhatTheScannerCannotDo) {
   };
   kinematics::ScanHead slow = roller_head();
   slow.max_speed_mm_s = 15'999;
-  EXPECT_NE(refusal(slow).find("max_speed_mm_s = 15999"), std::string::npos) << refusal(slow);
+  EXPECT_NE(refusal(slow).find("U moves at 16000 mm/s while a line is marked: faster than max_speed_mm_s = 15999"),
+            std::string::npos)
+      << refusal(slow);
   kinematics::ScanHead small = roller_head();
   small.field_mm = 27.99;  // the outermost pulses are 27.992 mm apart
   EXPECT_NE(refusal(small).find("field_mm = 27.99"), std::string::npos) << refusal(small);

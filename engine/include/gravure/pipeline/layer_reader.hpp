@@ -39,7 +39,11 @@ struct LayerStack {
   std::int64_t levels = 0;                ///< depth map: number of slices; 0 for a stack of layers
   std::optional<Rational> depth_min;      ///< depth map: sample with no pulse; default 0
   std::optional<Rational> depth_max;      ///< depth map: sample with every pulse; default 1, 255 or 65535
-  std::shared_ptr<ColumnSpills> spills;   ///< of images too large to turn over in memory; none: decoded many times
+  /// What messages call these three: the keys of a job, or the options that they came from.
+  std::string threshold_name = "image.threshold";
+  std::string depth_min_name = "image.depth_min";
+  std::string depth_max_name = "image.depth_max";
+  std::shared_ptr<ColumnSpills> spills;  ///< of images too large to turn over in memory; none: decoded many times
 };
 
 /// Fills in what the images say of themselves: samples, random_access and decoder_bytes of all distinct ones that open,

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "gravure/core/progress.hpp"
 #include "gravure/twin/exposure.hpp"
@@ -26,6 +27,10 @@ UnrolledSize unrolled_size(const ProgramHeader& header);
 
 /// Images the program shows: layers of the stack that are exposed at all.
 std::int64_t image_layers(const ProgramHeader& header);
+
+/// Which image each of header.layers shows, from 0 to image_layers(): several show the same one where there are bands
+/// or passes in both directions of a stage. Empty in helical mode, where a revolution shows a part of every image.
+std::vector<std::int64_t> images_of_layers(const ProgramHeader& header);
 
 /// Runs one revolution (pass) on the device, where there are bands that of each, and gives what was exposed as the
 /// source's picture: its size, orientation and polarity. Pictures whose lines run along columns are turned in parts
