@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "run_motion.hpp"
+
 namespace gravure::texture {
 namespace {
 
 /// How far along runs the texture is, period by period: the profile of a run is made when it begins.
 class RunCursor {
  public:
-  RunCursor(const PathRuns& path, std::int64_t period) : path_(path), run_(path.run_at(period)) { enter(); }
+  RunCursor(const PathRuns& path, std::int64_t period) : path_(path), run_(path.run_at(period)), motion_(path, run()) {}
   /// Periods rise from call to call; before the start and behind the end the ends stand still.
   void go_to(std::int64_t period) {
     bool moved = false;
@@ -20,22 +22,18 @@ class RunCursor {
       moved = true;
     }
     if (moved) {
-      enter();
+      motion_ = RunMotion(path_, run());
     }
-    const PathRun& at = run();
-    const std::int64_t in_run = std::max<std::int64_t>(period - at.start, 0);
-    run_mm_ =
-        in_run >= at.periods ? at.length_mm : profile_.at(static_cast<double>(in_run) * path_.period_s()).position_mm;
+    run_mm_ = motion_.at(std::max<std::int64_t>(period - run().start, 0));
   }
   const PathRun& run() const { return path_.runs()[run_]; }
   double run_mm() const { return run_mm_; }
   Place place() const { return PathRuns::place(run(), run_mm_); }
 
  private:
-  void enter() { profile_ = path_.profile(run()); }
   const PathRuns& path_;
   std::size_t run_;
-  motion::Profile profile_;
+  RunMotion motion_;
   double run_mm_ = 0;
 };
 

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "gravure/motion/plan_profile.hpp"
+#include "run_motion.hpp"
+#include "smooth_place.hpp"
 
 namespace gravure::texture {
 namespace {
@@ -11,21 +13,6 @@ namespace {
 /// Slope of the surface along a direction of the plane, by its normal.
 double slope(const SurfacePoint& point, const Vector2& along) {
   return -point.normal.head<2>().dot(along) / point.normal.z();
-}
-
-/// Integral of the position of a profile from its start to `time_s`.
-double travelled(const motion::Profile& profile, double time_s) {
-  double sum = 0;
-  for (std::size_t k = 0; k < profile.durations_s.size(); ++k) {
-    const double h = std::min(profile.durations_s[k], time_s - profile.times_s[k]);
-    if (h <= 0) {
-      continue;
-    }
-    sum += h * (profile.position_mm[k] + h * (profile.velocity_mm_s[k] / 2 + h * (profile.acceleration_mm_s2[k] / 6 +
-                                                                                  h * profile.jerk_mm_s3[k] / 24)));
-  }
-  const double beyond = time_s - profile.times_s[7];
-  return beyond > 0 ? sum + beyond * profile.stroke_mm : sum;
 }
 
 }  // namespace
@@ -57,11 +44,21 @@ motion::Profile PathRuns::profile(const PathRun& run) const {
   return motion::slow_down(planned.value(), std::max(1.0, periods * period_s_ / planned.value().access_time_s()));
 }
 
+void PathRuns::set_knot(std::int64_t periods) {
+  knot_ = periods;
+  knot_weights_.clear();
+  for (std::int64_t phase = 0; phase < periods; ++phase) {
+    knot_weights_.push_back(spline_weights<3>(static_cast<double>(phase) / static_cast<double>(periods)));
+  }
+}
+
 void PathRuns::schedule() {
   std::int64_t start = 0;
   for (PathRun& run : runs_) {
     run.start = start;
-    run.periods = std::llround(profile(run).access_time_s() / period_s_);
+    // A feed sets out one knot before its first control point moves on, and ends one after the last.
+    run.periods = run.fed() ? (static_cast<std::int64_t>(run.feed_mm.size()) + 3) * knot_
+                            : std::llround(profile(run).access_time_s() / period_s_);
     start += run.periods;
   }
 }
@@ -120,7 +117,7 @@ std::vector<double> mean_places(const PathRuns& path, std::int64_t cell) {
   std::vector<double> means;
   means.reserve(static_cast<std::size_t>(cells));
   std::size_t r = 0;
-  motion::Profile profile = path.profile(runs[0]);
+  RunMotion motion(path, runs[0]);
   // Half periods, so that odd cells have whole ends too.
   for (std::int64_t k = 0; k < cells; ++k) {
     const std::int64_t from2 = (2 * k - 1) * cell;
@@ -136,15 +133,15 @@ std::vector<double> mean_places(const PathRuns& path, std::int64_t cell) {
       const std::int64_t a = std::max({from2, start2, std::int64_t{0}});
       const std::int64_t b = std::min(to2, end2);
       if (b > a && runs[r].length_mm > 0) {
-        const auto seconds = [&](std::int64_t half) { return static_cast<double>(half - start2) * h / 2; };
-        const double moved = (travelled(profile, seconds(b)) - travelled(profile, seconds(a))) * 2 / h;
+        const auto in_run = [&](std::int64_t half) { return static_cast<double>(half - start2) / 2; };
+        const double moved = motion.travelled(in_run(a), in_run(b)) * 2 / h;
         sum += static_cast<double>(b - a) * (static_cast<double>(runs[r].first) - base) +
                moved * static_cast<double>(runs[r].count) / runs[r].length_mm;
       }
       if (end2 >= to2 || r + 1 == runs.size()) {
         break;
       }
-      profile = path.profile(runs[++r]);
+      motion = RunMotion(path, runs[++r]);
     }
     const std::int64_t end2 = 2 * path.periods();
     if (to2 > end2) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,6 +21,12 @@ struct PathRun {
   double stretch = 1;        ///< >= 1: so much slower than the caps allow
   std::int64_t periods = 0;  ///< it lasts
   std::int64_t start = 0;    ///< period, the first run's being 0
+  /// Where the spot is every knot, but for both ends: control points of a cubic spline. Empty: a profile.
+  std::vector<double> feed_mm = {};
+
+  bool fed() const noexcept { return !feed_mm.empty(); }
+  /// Over so many segments that one hard place must not slow all of them.
+  bool is_long() const noexcept { return count >= 8; }
 };
 
 /// Where a spot is on the surface.
@@ -42,7 +49,15 @@ class PathRuns {
   /// Periods of all runs; known after schedule().
   std::int64_t periods() const noexcept { return runs_.empty() ? 0 : runs_.back().start + runs_.back().periods; }
 
-  /// The shortest move under the caps, stretched, then to whole periods.
+  /// Periods from control point to control point of feeds, 0 before set_knot().
+  std::int64_t knot() const noexcept { return knot_; }
+  void set_knot(std::int64_t periods);
+  /// The weights of four control points so many periods behind a knot.
+  const std::array<double, 4>& knot_weights(std::int64_t phase) const noexcept {
+    return knot_weights_[static_cast<std::size_t>(phase)];
+  }
+
+  /// The shortest move under the caps, stretched, then to whole periods; of runs that are not fed.
   motion::Profile profile(const PathRun& run) const;
   /// Sets periods and start of every run.
   void schedule();
@@ -58,6 +73,8 @@ class PathRuns {
   std::vector<SurfacePoint> targets_;
   std::vector<PathRun> runs_;
   double period_s_ = 0;
+  std::int64_t knot_ = 0;
+  std::vector<std::array<double, 4>> knot_weights_;
 };
 
 /// The mean of the texture's place over cells of `cell` periods, for SmoothPlace.

@@ -13,15 +13,25 @@ namespace {
 constexpr int kMostPasses = 300;
 constexpr double kSpread = 0.7637626158259734;  ///< of SmoothPlace, in cells: (7 / 12)^(1/2)
 
-double smoothing_s(const PathTimingRequest& request, const PathRuns& path) {
+double smoothing_s(const PathTimingRequest& request, const PathRuns& path, bool fed) {
   if (request.smoothing_s > 0) {
     return request.smoothing_s;
   }
-  constexpr double kLeast_s = 0.005;
   constexpr double kMost_s = 0.06;
+  double least_s = 0.005;
+  // Feeds change from full acceleration to full braking at once: that takes twice a / j at least.
+  for (std::size_t axis = 0; fed && axis < kStageAxes; ++axis) {
+    least_s = std::max(least_s, 2 * request.limits[axis].acceleration / request.limits[axis].jerk);
+  }
   const double point_s =
       static_cast<double>(path.periods()) * path.period_s() / static_cast<double>(request.targets.size() - 1);
-  return std::clamp(request.sigma_points * point_s / 4, kLeast_s, kMost_s);
+  return std::clamp(request.sigma_points * point_s / 4, least_s, std::max(least_s, kMost_s));
+}
+
+/// Whether a fed run takes longer than the galvo alone would.
+bool slowed_feed(const PathRuns& path, const PathRun& run) {
+  return run.fed() &&
+         static_cast<double>(run.periods - 2 * path.knot()) * path.period_s() > path.profile(run).access_time_s();
 }
 
 }  // namespace
@@ -33,12 +43,16 @@ SevenAxisPlanner::SevenAxisPlanner(const PathTimingRequest& request)
   const std::size_t ends[] = {0, request.targets.size() - 1};
   stages_ = StageSpline(request.axes, ends);
   cap_by_galvo(request, stages_, nullptr, path_);
+  feed_ = PathFeed(path_);
+  feed_.plan(request.limits, stages_, path_);
   path_.schedule();
-  cell_ = std::max<std::int64_t>(2, std::llround(smoothing_s(request, path_) / kSpread / request.servo_s));
-  place_stages();
+  cell_ = std::max<std::int64_t>(2, std::llround(smoothing_s(request, path_, feed_.any()) / kSpread / request.servo_s));
+  place_ = SmoothPlace(mean_places(path_, cell_), cell_, request_.targets.size());
 }
 
-void SevenAxisPlanner::place_stages() {
+void SevenAxisPlanner::retime() {
+  feed_.plan(request_.limits, stages_, path_);
+  path_.schedule();
   place_ = SmoothPlace(mean_places(path_, cell_), cell_, request_.targets.size());
 }
 
@@ -49,7 +63,7 @@ Result<void> SevenAxisPlanner::settle(const CancelToken& cancel) {
       return Error{ErrorCode::cancelled, "stopped while the path was being timed"};
     }
     ++passes_;
-    const SlowDown slow = slow_stages(request_.limits, stages_, place_, path_);
+    const SlowDown slow = slow_stages(request_.limits, stages_, place_, feed_, path_);
     if (slow.needed && pass == kMostPasses) {
       return Error{
           ErrorCode::out_of_range,
@@ -57,43 +71,38 @@ Result<void> SevenAxisPlanner::settle(const CancelToken& cancel) {
                       kPathAxes[slow.axis], slow.point)};
     }
     if (slow.needed) {
-      path_.schedule();
-      place_stages();
+      retime();
     } else if (pass > 0) {
       return {};
     }
     if (pass == 0) {
       cap_by_galvo(request_, stages_, &place_, path_);
-      path_.schedule();
-      place_stages();
+      retime();
     }
   }
 }
 
 void SevenAxisPlanner::lower(const std::vector<LimitUse>& breaches) {
   constexpr double kMore = 1.001;
-  std::vector<double> factors(path_.runs().size(), 1.0);
+  Needs needs(path_);
   for (const LimitUse& breach : breaches) {
     const double power = breach.kind == LimitKind::speed ? 1 : breach.kind == LimitKind::acceleration ? 2 : 3;
     const double factor = kMore * std::pow(breach.share(), 1 / power);
     const std::int64_t period = breach.instant - SmoothPlace::kReach * cell_;
-    const std::int64_t reach = breach.axis < kStageAxes ? cell_ + cell_ / 2 : 1;
-    for (std::size_t r = path_.run_at(period - reach); r <= path_.run_at(period + reach); ++r) {
-      factors[r] = std::max(factors[r], factor);
-    }
+    const std::int64_t reach = breach.axis < kStageAxes ? cell_ + cell_ / 2 : 1 + 2 * path_.knot();
+    needs.add(period - reach, period + reach, factor);
   }
-  for (std::size_t r = 0; r < factors.size(); ++r) {
-    path_.runs()[r].stretch *= factors[r];
-  }
-  path_.schedule();
-  place_stages();
+  needs.slow(feed_, path_);
+  retime();
 }
 
 TimedPath SevenAxisPlanner::timed() const {
   TimedPath timed;
   timed.runs = path_.runs().size();
-  timed.slowed = static_cast<std::size_t>(
-      std::count_if(path_.runs().begin(), path_.runs().end(), [](const PathRun& run) { return run.stretch > 1; }));
+  timed.slowed =
+      static_cast<std::size_t>(std::count_if(path_.runs().begin(), path_.runs().end(), [this](const PathRun& run) {
+        return run.stretch > 1 || slowed_feed(path_, run);
+      }));
   timed.passes = passes_;
   timed.smoothing_s = static_cast<double>(cell_) * kSpread * request_.servo_s;
   timed.motion = std::make_shared<SevenAxisMotion>(

@@ -4,6 +4,7 @@
 
 #include "gravure/texture/path_timing.hpp"
 #include "gravure/texture/prove_limits.hpp"
+#include "path_feed.hpp"
 #include "path_instants.hpp"
 
 namespace gravure::texture {
@@ -20,9 +21,11 @@ class SevenAxisPlanner {
   TimedPath timed() const;
 
  private:
-  void place_stages();
+  /// Feeds, times and the stages' place, after something has been slowed.
+  void retime();
   const PathTimingRequest& request_;
   PathRuns path_;
+  PathFeed feed_;
   StageSpline stages_;
   SmoothPlace place_;
   std::int64_t cell_ = 2;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "run_motion.hpp"
 
 namespace gravure::texture {
 namespace {
@@ -49,14 +52,14 @@ struct Taken {
   double jerk = 0;
 };
 
-Taken taken_by(const StageRates& r, double reach_mm, const motion::Profile& profile, const SpotState& spot,
+Taken taken_by(const StageRates& r, double reach_mm, double speed, double acceleration, const SpotState& spot,
                double tilt) {
   const double w = std::abs(r.speed[3]) + std::abs(r.speed[4]);
   const double w_dot = std::abs(r.acceleration[3]) + std::abs(r.acceleration[4]);
   const double w_2 = w * w + w_dot;
   const double w_3 = w * w * w + 3 * w * w_dot + std::abs(r.jerk[3]) + std::abs(r.jerk[4]);
-  const double v = profile.peak_velocity_mm_s * spot.tangent.norm();
-  const double a = profile.peak_acceleration_up_mm_s2 * spot.tangent.norm();
+  const double v = speed * spot.tangent.norm();
+  const double a = acceleration * spot.tangent.norm();
   const double bend = std::abs(spot.bend_per_mm) * tilt;
   const auto most = [](const StageValues& of) { return std::max(std::abs(of[0]), std::abs(of[1])); };
   return {most(r.speed) + w * reach_mm, most(r.acceleration) + w_2 * reach_mm + 2 * w * v + bend * v * v,
@@ -74,7 +77,9 @@ double left(double limit, double taken) {
 void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, const SmoothPlace* place,
                   PathRuns& path) {
   for (PathRun& run : path.runs()) {
-    const motion::Profile before = place != nullptr ? path.profile(run) : motion::Profile();
+    const RunMotion before(path, run);
+    const double speed = place != nullptr ? before.peak_speed() : 0;
+    const double acceleration = place != nullptr ? before.peak_acceleration() : 0;
     Taken taken;
     double u = 0;
     double v = 0;
@@ -91,8 +96,8 @@ void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, c
         pose = state.value;
         at_rest = rates(state, where);
       }
-      const Taken here = taken_by(at_rest, (spot.position_mm - request.table.centre_mm).norm(), before, spot,
-                                  std::abs(std::sin(pose[3])));
+      const Taken here = taken_by(at_rest, (spot.position_mm - request.table.centre_mm).norm(), speed, acceleration,
+                                  spot, std::abs(std::sin(pose[3])));
       taken = {std::max(taken.speed, here.speed), std::max(taken.acceleration, here.acceleration),
                std::max(taken.jerk, here.jerk)};
       const Vector3 direction = request.table.turned(pose[3], pose[4], spot.tangent + request.table.centre_mm);
@@ -112,41 +117,66 @@ void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, c
 
 namespace {
 
-/// How much slower each run must get, found spread over its neighbours.
-class Needs {
- public:
-  explicit Needs(const PathRuns& path) : path_(path), factors_(path.runs().size(), 1.0) {}
-  void add(double from_period, double to_period, double factor) {
-    const std::size_t first = path_.run_at(static_cast<std::int64_t>(std::floor(from_period)));
-    const std::size_t last = path_.run_at(static_cast<std::int64_t>(std::ceil(to_period)));
-    for (std::size_t r = first; r <= last; ++r) {
-      factors_[r] = std::max(factors_[r], factor);
+/// The segments that the spot passes in these periods: of long runs those alone, of others all.
+std::pair<std::size_t, std::size_t> segments_between(const PathRuns& path, std::int64_t from, std::int64_t to) {
+  const auto segment = [&path](std::int64_t period, bool end) {
+    const PathRun& run = path.runs()[path.run_at(period)];
+    if (!run.fed()) {
+      return run.first + (end ? run.count - 1 : 0);
     }
-  }
-  /// Falls off by e within `spread` periods.
-  const std::vector<double>& spread(double spread) {
-    for (std::size_t r = 1; r < factors_.size(); ++r) {
-      fade(factors_[r - 1], factors_[r], path_.runs()[r], spread);
-    }
-    for (std::size_t r = factors_.size() - 1; r > 0; --r) {
-      fade(factors_[r], factors_[r - 1], path_.runs()[r - 1], spread);
-    }
-    return factors_;
-  }
-
- private:
-  static void fade(double from, double& to, const PathRun& over, double spread) {
-    constexpr double kNothing = 1e-6;
-    const double left = (from - 1) * std::exp(-static_cast<double>(over.periods) / spread);
-    to = left > kNothing ? std::max(to, 1 + left) : to;
-  }
-  const PathRuns& path_;
-  std::vector<double> factors_;
-};
+    return PathRuns::place(run, RunMotion(path, run).at(std::max<std::int64_t>(period - run.start, 0))).index;
+  };
+  return {segment(from, false), segment(to, true)};
+}
 
 }  // namespace
 
-SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, PathRuns& path) {
+Needs::Needs(const PathRuns& path) : path_(path), factors_(path.targets().size() - 1, 1.0) {}
+
+void Needs::add(std::int64_t from_period, std::int64_t to_period, double factor) {
+  const auto [first, last] = segments_between(path_, from_period, to_period);
+  for (std::size_t k = first; k <= last; ++k) {
+    factors_[k] = std::max(factors_[k], factor);
+  }
+}
+
+void Needs::spread(const PathFeed& feed, double spread) {
+  constexpr double kNothing = 1e-6;
+  std::vector<double> kept(factors_.size());  // of what is more than 1, over a segment
+  for (const PathRun& run : path_.runs()) {
+    for (std::size_t k = run.first; k < run.first + run.count; ++k) {
+      const double periods = run.fed() ? feed.segment_s(k) / path_.period_s()
+                                       : static_cast<double>(run.periods) / static_cast<double>(run.count);
+      kept[k] = std::exp(-periods / spread);
+    }
+  }
+  const auto fade = [&](std::size_t from, std::size_t to) {
+    const double left = (factors_[from] - 1) * kept[to];
+    factors_[to] = left > kNothing ? std::max(factors_[to], 1 + left) : factors_[to];
+  };
+  for (std::size_t k = 1; k < factors_.size(); ++k) {
+    fade(k - 1, k);
+  }
+  for (std::size_t k = factors_.size() - 1; k > 0; --k) {
+    fade(k, k - 1);
+  }
+}
+
+void Needs::slow(PathFeed& feed, PathRuns& path) const {
+  for (PathRun& run : path.runs()) {
+    if (run.is_long()) {
+      for (std::size_t k = run.first; k < run.first + run.count; ++k) {
+        feed.slow(k, factors_[k]);
+      }
+    } else {
+      const auto first = factors_.begin() + static_cast<std::ptrdiff_t>(run.first);
+      run.stretch *= *std::max_element(first, first + static_cast<std::ptrdiff_t>(run.count));
+    }
+  }
+}
+
+SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, PathFeed& feed,
+                     PathRuns& path) {
   constexpr double kAllowed = 0.9995;  // of the factor: between two looks nothing is seen
   constexpr double kMore = 1.002;      // so that the next pass is the last
   Needs needs(path);
@@ -160,7 +190,8 @@ SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const
     const Need need = need_of(limits, rates(state, where));
     if (need.factor > kAllowed) {
       slow.needed = true;
-      needs.add(period - cell, period + cell, need.factor * kMore);
+      needs.add(static_cast<std::int64_t>(std::floor(period - cell)),
+                static_cast<std::int64_t>(std::ceil(period + cell)), need.factor * kMore);
       if (need.factor > worst) {
         worst = need.factor;
         slow.point = where.place.index;
@@ -172,10 +203,8 @@ SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const
     period += std::clamp(half_point, cell / 64, cell / 8);
   }
   if (slow.needed) {
-    const std::vector<double>& factors = needs.spread(cell);
-    for (std::size_t r = 0; r < factors.size(); ++r) {
-      path.runs()[r].stretch *= factors[r];
-    }
+    needs.spread(feed, cell);
+    needs.slow(feed, path);
   }
   return slow;
 }

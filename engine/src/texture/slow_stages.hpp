@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "gravure/texture/path_timing.hpp"
+#include "path_feed.hpp"
 #include "path_runs.hpp"
 #include "path_spline.hpp"
 #include "smooth_place.hpp"
@@ -15,15 +18,31 @@ namespace gravure::texture {
 void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, const SmoothPlace* place,
                   PathRuns& path);
 
+/// How much slower each segment must get, found spread over its neighbours.
+class Needs {
+ public:
+  explicit Needs(const PathRuns& path);
+  void add(std::int64_t from_period, std::int64_t to_period, double factor);
+  /// What is needed fades by e within `spread` periods to both sides.
+  void spread(const PathFeed& feed, double spread);
+  /// Short runs as a whole, long ones where it is needed.
+  void slow(PathFeed& feed, PathRuns& path) const;
+
+ private:
+  const PathRuns& path_;
+  std::vector<double> factors_;
+};
+
 /// Whether a stage is beyond a limit somewhere; where it is worst.
 struct SlowDown {
   bool needed = false;
   std::size_t point = 0;
   std::size_t axis = 0;
 };
-/// Looks at the stages all along and stretches the runs round every place where a limit is broken, less and less with
+/// Looks at the stages all along and slows the runs round every place where a limit is broken, less and less with
 /// the distance from it.
-SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, PathRuns& path);
+SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, PathFeed& feed,
+                     PathRuns& path);
 
 /// Caps a run of the stages alone. The axis that cannot be kept within its limits, if there is one.
 std::optional<std::size_t> cap_by_stages(const SevenLimits& limits, const StageSpline& stages, const PathRuns& path,
