@@ -3,11 +3,13 @@
 #include <memory>
 #include <optional>
 
+#include "freeform_job.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/twin/unroll.hpp"
 #include "job_loader.hpp"
 #include "program_files.hpp"
+#include "texture_options.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -108,7 +110,23 @@ std::string text_of(const CompileOutcome& outcome, const std::string& output, do
                      polarity_name(header.fires), fired_percent, outcome.kept ? "; it was there already" : "");
 }
 
+/// Freeform jobs are made in one go: they have no revolutions or bands to share out.
+Result<int> run_freeform(const Options& options, const Command& command) {
+  if (!options.revolutions.empty() || !options.bands.empty() || options.resume) {
+    return Error{ErrorCode::bad_argument,
+                 "--revolutions, --bands, --resume: a freeform job is compiled whole; leave them out"};
+  }
+  GRAVURE_TRY(const FreeformJob job, read_freeform_job(options.job));
+  std::vector<std::string> inputs = inputs_of(job.texture);
+  inputs.push_back(options.job);
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs));
+  return compile_freeform_job(job, options.output, grv_options(options.compression), command);
+}
+
 Result<int> run(const Options& options, const Command& command) {
+  if (is_freeform_job(options.job)) {
+    return run_freeform(options, command);
+  }
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.job, files, true));
   std::vector<std::string> inputs = {options.job};
@@ -132,7 +150,7 @@ Result<int> run(const Options& options, const Command& command) {
 }  // namespace
 
 void add_compile(CLI::App& app, Command& command) {
-  CLI::App* verb = add_verb(app, command, "compile", "Image stack to program file");
+  CLI::App* verb = add_verb(app, command, "compile", "Image stack, or texture on a surface, to program file");
   const auto options = std::make_shared<Options>();
   verb->add_option("JOB", options->job, "Job file")->required();
   verb->add_option("-o,--output", options->output, "Program file to write (.grv)")->required();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gravure/core/file_output.hpp"
+#include "gravure/formats/freeform_job.hpp"
 #include "gravure/formats/job_file.hpp"
 #include "gravure/formats/tiff_writer.hpp"
 #include "verb.hpp"
@@ -21,19 +22,21 @@ struct Options {
   std::string folder = ".";
 };
 
-const std::map<std::string, Mode> kModes = {{"rotary", Mode::rotary}, {"helical", Mode::helical}, {"flat", Mode::flat}};
+const std::map<std::string, Mode> kModes = {
+    {"rotary", Mode::rotary}, {"helical", Mode::helical}, {"flat", Mode::flat}, {"freeform", Mode::freeform}};
 
 /// A diamond lattice that closes round the circumference; the second layer keeps only its crossings.
-std::vector<std::byte> starter_picture(int layer) {
+std::vector<std::byte> starter_picture(int layer, int pixels, int lines) {
   constexpr int kCell = 16;  // pixels and lines; divides both sides
   static_assert(kStarterPixels % kCell == 0 && kStarterLines % kCell == 0 && kStarterPixels % 8 == 0);
-  std::vector<std::byte> bits(static_cast<std::size_t>(kStarterPixels / 8) * kStarterLines);
-  for (int y = 0; y < kStarterLines; ++y) {
-    for (int x = 0; x < kStarterPixels; ++x) {
+  static_assert(kStarterTexturePixels % kCell == 0 && kStarterTextureLines % kCell == 0);
+  std::vector<std::byte> bits(static_cast<std::size_t>(pixels / 8) * static_cast<std::size_t>(lines));
+  for (int y = 0; y < lines; ++y) {
+    for (int x = 0; x < pixels; ++x) {
       const bool rising = (x + y) % kCell < 4;
-      const bool falling = (x - y + kStarterLines) % kCell < 4;
+      const bool falling = (x - y + lines) % kCell < 4;
       if (layer == 0 ? rising || falling : rising && falling) {
-        const int at = y * (kStarterPixels / 8) + x / 8;
+        const int at = y * (pixels / 8) + x / 8;
         bits[static_cast<std::size_t>(at)] |= static_cast<std::byte>(0x80U >> (x % 8));
       }
     }
@@ -41,35 +44,47 @@ std::vector<std::byte> starter_picture(int layer) {
   return bits;
 }
 
-Result<void> write_starter(Mode mode, const fs::path& job, const fs::path& layers, std::vector<std::string>& written) {
+Result<void> write_picture(const std::string& path, int layer, int pixels, int lines,
+                           std::vector<std::string>& written) {
+  BilevelTiffPage page;
+  page.width = pixels;
+  page.height = lines;
+  GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(path, page));
+  GRAVURE_CHECK(writer.append_rows(starter_picture(layer, pixels, lines)));
+  GRAVURE_CHECK(writer.commit());
+  written.push_back(path);
+  return {};
+}
+
+Result<void> write_starter(Mode mode, const fs::path& job, const fs::path& pictures,
+                           std::vector<std::string>& written) {
+  const bool freeform = mode == Mode::freeform;
   std::error_code failed;
-  fs::create_directories(layers, failed);
+  fs::create_directories(freeform ? job.parent_path() : pictures, failed);
   if (failed) {
-    return Error{ErrorCode::io, layers.string() + ": cannot make the folder: " + failed.message()};
+    return Error{ErrorCode::io, pictures.string() + ": cannot make the folder: " + failed.message()};
   }
-  for (int layer = 0; layer < kStarterLayers; ++layer) {
+  if (freeform) {
+    GRAVURE_CHECK(write_picture(pictures.string(), 0, kStarterTexturePixels, kStarterTextureLines, written));
+  }
+  for (int layer = 0; !freeform && layer < kStarterLayers; ++layer) {
     if (cancel_token().cancelled()) {
       return Error{ErrorCode::cancelled, "stopped before the job was complete; nothing was written"};
     }
-    const std::string path = (layers / fmt::format("layer_{:03}.tif", layer)).string();
-    BilevelTiffPage page;
-    page.width = kStarterPixels;
-    page.height = kStarterLines;
-    GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(path, page));
-    GRAVURE_CHECK(writer.append_rows(starter_picture(layer)));
-    GRAVURE_CHECK(writer.commit());
-    written.push_back(path);
+    GRAVURE_CHECK(write_picture((pictures / fmt::format("layer_{:03}.tif", layer)).string(), layer, kStarterPixels,
+                                kStarterLines, written));
   }
-  GRAVURE_CHECK(write_file(job.string(), starter_job(mode)));
+  GRAVURE_CHECK(write_file(job.string(), freeform ? freeform_starter_job() : starter_job(mode)));
   written.insert(written.begin(), job.string());
   return {};
 }
 
 Result<int> run(const Options& options, const Command& command) {
   const fs::path job = fs::path(options.folder) / "job.toml";
-  const fs::path layers = fs::path(options.folder) / "layers";
+  const Mode mode = kModes.at(options.mode);
+  const fs::path pictures = fs::path(options.folder) / (mode == Mode::freeform ? "texture.tif" : "layers");
   std::error_code failed;
-  for (const fs::path& taken : {job, layers}) {
+  for (const fs::path& taken : {job, pictures}) {
     if (fs::exists(fs::symlink_status(taken, failed))) {  // also a link to nowhere
       return Error{ErrorCode::bad_argument, taken.string() + ": is there already; give another folder"};
     }
@@ -77,9 +92,8 @@ Result<int> run(const Options& options, const Command& command) {
   cancel_token();  // before there is a folder: from here on Ctrl-C takes it away again
   const bool made_folder = !fs::exists(fs::symlink_status(options.folder, failed));
   std::vector<std::string> written;
-  if (Result<void> done = write_starter(kModes.at(options.mode), job, layers, written);
-      !done) {  // so that it can be tried again
-    fs::remove_all(made_folder ? fs::path(options.folder) : layers, failed);
+  if (Result<void> done = write_starter(mode, job, pictures, written); !done) {  // so that it can be tried again
+    fs::remove_all(made_folder ? fs::path(options.folder) : pictures, failed);
     return done.error();
   }
   if (command.json) {
@@ -98,9 +112,9 @@ Result<int> run(const Options& options, const Command& command) {
 void add_init(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "init", "Write a commented starter job that runs as it is");
   const auto options = std::make_shared<Options>();
-  verb->add_option("--mode", options->mode, "Kind of job: rotary, helical or flat")
+  verb->add_option("--mode", options->mode, "Kind of job: rotary, helical, flat or freeform")
       ->required()
-      ->check(CLI::IsMember({"rotary", "helical", "flat"}));
+      ->check(CLI::IsMember({"rotary", "helical", "flat", "freeform"}));
   verb->add_option("DIR", options->folder, "Folder to write to")->capture_default_str();
   verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
 }

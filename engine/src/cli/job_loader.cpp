@@ -13,6 +13,7 @@
 #include "gravure/sync/make_plan.hpp"
 #include "job_machine.hpp"
 #include "job_scanner.hpp"
+#include "program_files.hpp"
 #include "program_parts.hpp"
 
 namespace gravure::cli {
@@ -29,13 +30,6 @@ bool images_are_there(const Job& job) {
   const std::vector<std::string> patterns =
       job.image.depth_map ? std::vector<std::string>{*job.image.depth_map} : job.image.files;
   return static_cast<bool>(expand_patterns(folder.empty() ? "." : folder, patterns));
-}
-
-/// Relative to the folder where that is possible, so that a job and its program can move together.
-std::string relative_to(const std::string& path, const fs::path& folder) {
-  std::error_code failed;
-  const fs::path near = fs::proximate(path, folder.empty() ? fs::path(".") : folder, failed);
-  return failed ? path : near.generic_string();
 }
 
 }  // namespace

@@ -96,7 +96,9 @@ std::string text_of(const PathReport& report) {
 
 }  // namespace
 
-Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& given, const Command& command) {
+Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& given,
+                                const std::vector<std::string>& violations, const std::vector<std::string>& notes,
+                                const Command& command) {
   VerifyPathOptions options = given;
   options.cancel = &cancel_token();
   Result<PathReport> judged = [&] {
@@ -104,7 +106,9 @@ Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& gi
     options.progress = &bar;
     return verify_path(program, emulated_devices(), options);
   }();
-  GRAVURE_TRY(const PathReport report, std::move(judged));
+  GRAVURE_TRY(PathReport report, std::move(judged));
+  report.violations.insert(report.violations.begin(), violations.begin(), violations.end());
+  report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
   if (command.json) {
     print_json(json_of(report));
   } else {

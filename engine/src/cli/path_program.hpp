@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "gravure/core/program.hpp"
 #include "gravure/twin/verify_path.hpp"
@@ -8,8 +9,10 @@
 
 namespace gravure::cli {
 
-/// What `verify` does with a program that follows a path.
-Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& options, const Command& command);
+/// What `verify` does with a program that follows a path; `violations` and `notes` are what is known of it already.
+Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& options,
+                                const std::vector<std::string>& violations, const std::vector<std::string>& notes,
+                                const Command& command);
 
 /// What `unroll` does with a picture on a surface: every pulse that fired, put on the workpiece and projected back
 /// along z.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "freeform_job.hpp"
 #include "gravure/core/exact.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/plan_json.hpp"
@@ -186,6 +187,9 @@ void add_plan(CLI::App& app, Command& command) {
   verb->add_option("JOB", *path, "Job file")->required();
   verb->callback([&command, path] {
     command.run = [&command, path]() -> Result<int> {
+      if (is_freeform_job(*path)) {
+        return plan_freeform_job(*path, command);
+      }
       const ImageFiles files;
       GRAVURE_TRY(const LoadedJob loaded, load_job(*path, files, false));
       const ImageSettings& image = loaded.job.image;

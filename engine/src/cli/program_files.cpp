@@ -59,6 +59,12 @@ std::string locate_source(const SourceImage& source, const ProgramHeader& header
   return {};
 }
 
+std::string relative_to(const std::string& path, const fs::path& folder) {
+  std::error_code failed;
+  const fs::path near = fs::proximate(path, folder.empty() ? fs::path(".") : folder, failed);
+  return failed ? path : near.generic_string();
+}
+
 Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
     if (same_file(output, input)) {

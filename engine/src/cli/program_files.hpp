@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,6 +40,9 @@ struct LayerOrigin {
   std::int64_t level = 0;
 };
 LayerOrigin origin_of(const ProgramHeader& header, std::int64_t layer);
+
+/// `path` as seen from `folder` where that is possible, so that a job, its files and its program can move together.
+std::string relative_to(const std::string& path, const std::filesystem::path& folder);
 
 /// Fails with bad_argument where `output` is one of the files that are being read.
 Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs);

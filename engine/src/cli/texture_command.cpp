@@ -16,9 +16,9 @@ namespace gravure::cli {
 namespace {
 
 struct Options {
-  TextureOptions texture;
-  SplitOptions split;
-  AxesOptions axes;
+  TextureSettings texture;
+  SplitSettings split;
+  AxesSettings axes;
   std::optional<double> most_tilt_deg;
   std::string points;
 };
@@ -32,7 +32,7 @@ struct Found {
   std::vector<std::string> violations;
 };
 
-Result<texture::Split> split_of(const SplitOptions& options, const texture::Surface& surface,
+Result<texture::Split> split_of(const SplitSettings& options, const texture::Surface& surface,
                                 const texture::TexturePath& path) {
   const std::unique_ptr<texture::Splitter> splitter = splitter_of(options);
   const texture::DeviationLimits limits = limits_of(options);
@@ -41,7 +41,7 @@ Result<texture::Split> split_of(const SplitOptions& options, const texture::Surf
              : texture::split_by_published_rule(*splitter, surface, path, limits, cancel_token());
 }
 
-std::string how_sigma(const SplitOptions& options, const texture::Split& split) {
+std::string how_sigma(const SplitSettings& options, const texture::Split& split) {
   if (options.method == "adaptive") {
     return " at most, narrowed where limits ask for it";
   }

@@ -2,16 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "gravure/kinematics/machines.hpp"
-#include "gravure/texture/clamping.hpp"
+#include "texture_following.hpp"
 
 namespace gravure::cli {
 namespace {
 
-constexpr std::int64_t kMostHilbertOrder = 10;
+template <std::size_t count>
+CLI::Validator one_of(const std::array<std::string_view, count>& words) {
+  return CLI::IsMember(std::vector<std::string>(words.begin(), words.end()));
+}
 
 }  // namespace
 
@@ -19,7 +25,7 @@ double figure(double value) {
   return std::round(value * 1e9) / 1e9 + 0.0;
 }
 
-void add_texture_options(CLI::App& verb, TextureOptions& options) {
+void add_texture_options(CLI::App& verb, TextureSettings& options) {
   verb.add_option("--surface", options.surface, "z in mm by x and y in mm: + - * / ^, sin, cos, exp, sqrt, pi ...");
   verb.add_option("--height-field", options.height_field, "Surface from a picture of 16 bits or floats");
   add_length(verb, "--pixel-um", options.pixel_um, 1e9, "Side of its pixels along x");
@@ -47,9 +53,9 @@ void add_texture_options(CLI::App& verb, TextureOptions& options) {
              "Distance of the points along --path and --svg; at most that along --bitmap (default 100)");
 }
 
-void add_split_options(CLI::App& verb, SplitOptions& options, const std::string& without_sigma) {
+void add_split_options(CLI::App& verb, SplitSettings& options, const std::string& without_sigma) {
   verb.add_option("--split", options.method, "How the stages' path is made")
-      ->check(CLI::IsMember({"gaussian", "savitzky-golay", "fft", "adaptive", "optimal"}))
+      ->check(one_of(kSplitMethods))
       ->capture_default_str();
   verb.add_flag("--focus-axis", options.focus_axis, "An axis W takes up the focus offset: no limit for it");
   add_length(verb, "--sigma-um", options.sigma_um, 1e9,
@@ -61,12 +67,12 @@ void add_split_options(CLI::App& verb, SplitOptions& options, const std::string&
       ->capture_default_str();
 }
 
-texture::DeviationLimits limits_of(const SplitOptions& options) {
+texture::DeviationLimits limits_of(const SplitSettings& options) {
   return {options.focus_axis ? std::numeric_limits<double>::infinity() : options.fod_um / kUmPerMm,
           options.bia_deg / kDegreesPerRad, options.displacement_mm};
 }
 
-std::unique_ptr<texture::Splitter> splitter_of(const SplitOptions& options) {
+std::unique_ptr<texture::Splitter> splitter_of(const SplitSettings& options) {
   using texture::SplitMethod;
   auto method = SplitMethod::gaussian;
   for (const SplitMethod each :
@@ -76,26 +82,59 @@ std::unique_ptr<texture::Splitter> splitter_of(const SplitOptions& options) {
   return texture::make_splitter(method, {.sigma_mm = 0, .cut = options.cut});
 }
 
-void add_axes_options(CLI::App& verb, AxesOptions& options) {
-  verb.add_option("--branch", options.branch, "Sign of A")
-      ->check(CLI::IsMember({"positive", "negative"}))
-      ->capture_default_str();
+void add_axes_options(CLI::App& verb, AxesSettings& options) {
+  verb.add_option("--branch", options.branch, "Sign of A")->check(one_of(kBranches))->capture_default_str();
   verb.add_option("--signs", options.signs, "Senses of the axes: of [A], or of [C2]'s post-processor")
-      ->check(CLI::IsMember({"texturing", "post-processor"}))
+      ->check(one_of(kSigns))
       ->capture_default_str();
   verb.add_option("--origin-mm", options.origin_mm, "Where A and C meet, in the workpiece: x y z")->expected(3);
   verb.add_option("--tilt-deg", options.tilt_deg, "Clamping: turned about x, then about y, by so much")->expected(2);
 }
 
-Result<std::vector<texture::SevenAxes>> axes_of(const AxesOptions& options, const texture::Split& split) {
+void add_motion_options(CLI::App& verb, FreeformJob& job, std::vector<std::string>& limits) {
+  verb.add_option("--rule", job.split.rule,
+                  "Without --sigma-um: time, the smallest that costs no time, or published, the first of 30000 ...")
+      ->check(one_of(kSigmaRules))
+      ->capture_default_str();
+  verb.add_option("--time-share-percent", job.split.time_share_percent,
+                  "How much longer than the fastest, for --rule time")
+      ->check(number_from(0, 1000))
+      ->capture_default_str();
+  verb.add_option("--stops", job.motion.stops,
+                  "Where the spot rests: points or corners; left out: points of a Hilbert curve, else corners")
+      ->check(one_of(kStops));
+  verb.add_option("--limit", limits,
+                  "AXIS=SPEED,ACCELERATION,JERK of one axis, mm or rad per s, s^2, s^3; as often as needed");
+  add_length(verb, "--servo-us", job.motion.servo_us, 1e6, "Servo period: for a program a whole number of pulse slots")
+      ->capture_default_str();
+}
+
+Result<void> set_limits(const std::vector<std::string>& limits, MotionSettings& motion) {
+  for (const std::string& limit : limits) {
+    GRAVURE_TRY(const AxisSetting setting, axis_setting("--limit", limit, "AXIS=SPEED,ACCELERATION,JERK"));
+    motion.limits[setting.axis] = {setting.numbers[0], setting.numbers[1], setting.numbers[2]};
+  }
+  return {};
+}
+
+texture::Clamping clamping_of(const AxesSettings& options) {
+  return {options.tilt_deg[0] / kDegreesPerRad, options.tilt_deg[1] / kDegreesPerRad};
+}
+
+kinematics::Machine machine_of(const AxesSettings& options) {
   const auto signs =
       options.signs == "texturing" ? kinematics::XyzacSigns::texturing : kinematics::XyzacSigns::post_processor;
   const kinematics::Vector3 origin_mm(options.origin_mm[0], options.origin_mm[1], options.origin_mm[2]);
-  const auto machine = kinematics::xyzac_machine(signs, origin_mm, {});
-  const auto branch = options.branch == "positive" ? kinematics::Branch::positive : kinematics::Branch::negative;
-  const texture::Clamping clamping{options.tilt_deg[0] / kDegreesPerRad, options.tilt_deg[1] / kDegreesPerRad};
-  const texture::Split lying = texture::clamped(split, clamping);
-  return texture::seven_axes(machine, lying.targets, lying.stages, branch);
+  return kinematics::xyzac_machine(signs, origin_mm, {});
+}
+
+kinematics::Branch branch_of(const AxesSettings& options) {
+  return options.branch == "positive" ? kinematics::Branch::positive : kinematics::Branch::negative;
+}
+
+Result<std::vector<texture::SevenAxes>> axes_of(const AxesSettings& options, const texture::Split& split) {
+  const texture::Split lying = texture::clamped(split, clamping_of(options));
+  return texture::seven_axes(machine_of(options), lying.targets, lying.stages, branch_of(options));
 }
 
 Result<void> write_points(const std::string& file, const texture::Split& split,
@@ -136,7 +175,7 @@ Json split_json(const std::string& surface, const texture::TexturePath& path, co
           {"displacement_mm", {{"max", figure(most.max_displacement_mm)}}}};
 }
 
-std::string split_text(const texture::TexturePath& path, const texture::Split& split, const SplitOptions& options,
+std::string split_text(const texture::TexturePath& path, const texture::Split& split, const SplitSettings& options,
                        const std::string& how_sigma) {
   const texture::DeviationSummary& most = split.most;
   const double length_mm = static_cast<double>(path.points_mm.size() - 1) * path.step_mm;

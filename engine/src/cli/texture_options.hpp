@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "gravure/core/path_motion.hpp"
+#include "gravure/formats/freeform_job.hpp"
 #include "gravure/texture/axes.hpp"
+#include "gravure/texture/clamping.hpp"
 #include "gravure/texture/picture_path.hpp"
 #include "gravure/texture/split.hpp"
 #include "gravure/texture/splitter.hpp"
@@ -33,66 +35,38 @@ CLI::Option* add_length(CLI::App& verb, const std::string& name, Number& number,
   return verb.add_option(name, number, text)->check(number_from(kLeast, most));
 }
 
-/// The surface and the path on it.
-struct TextureOptions {
-  std::string surface;
-  std::string height_field;
-  std::optional<double> pixel_um;
-  std::optional<double> pixel_y_um;
-  std::vector<double> height_mm;  ///< of the smallest and of the largest sample
-  std::string mesh;
-  double max_slope_deg = 80;
-  int hilbert_order = 0;
-  double size_mm = 40;
-  std::string path;
-  std::string svg;
-  double tolerance_um = 1;
-  std::string bitmap;
-  std::optional<double> pitch_um;
-  std::optional<double> line_pitch_um;
-  double run_out_um = 500;
-  std::string fires;
-  std::optional<std::int64_t> threshold;
-  std::optional<double> step_um;
-};
-void add_texture_options(CLI::App& verb, TextureOptions& options);
-/// Files that are read: no output may be one of them.
-std::vector<std::string> inputs_of(const TextureOptions& options);
+void add_texture_options(CLI::App& verb, TextureSettings& options);
+/// The names of the files that are read, the surface's first.
+std::vector<std::string*> files_of(TextureSettings& options);
+/// Where they lie: no output may be one of them.
+std::vector<std::string> inputs_of(TextureSettings options);
 /// What to call the surface: its expression, or its file.
-const std::string& surface_name(const TextureOptions& options);
+const std::string& surface_name(const TextureSettings& options);
+std::string texture_name(const TextureSettings& options);
 /// One of an expression, a height field or a mesh; project() refuses what is too steep.
-Result<std::unique_ptr<texture::Surface>> surface_of(const TextureOptions& options);
+Result<std::unique_ptr<texture::Surface>> surface_of(const TextureSettings& options);
 /// The path, its points a fixed length apart.
-Result<texture::TexturePath> path_of(const TextureOptions& options);
+Result<texture::TexturePath> path_of(const TextureSettings& options);
 /// The pixels of --bitmap in the plane, and the pulses of all of them.
-Result<texture::PictureGrid> picture_grid_of(const TextureOptions& options);
-Result<PathPulses> picture_pulses_of(const TextureOptions& options);
+Result<texture::PictureGrid> picture_grid_of(const TextureSettings& options);
+Result<PathPulses> picture_pulses_of(const TextureSettings& options);
 
-/// How the path is split between stages and galvo.
-struct SplitOptions {
-  std::string method = "gaussian";
-  bool focus_axis = false;  ///< takes up the focus offset: no limit for it
-  std::optional<double> sigma_um;
-  double cut = 8;
-  double fod_um = 100;
-  double bia_deg = 10;
-  double displacement_mm = 5;
-};
 /// `without_sigma`: what is done where --sigma-um is left out.
-void add_split_options(CLI::App& verb, SplitOptions& options, const std::string& without_sigma);
-texture::DeviationLimits limits_of(const SplitOptions& options);
-std::unique_ptr<texture::Splitter> splitter_of(const SplitOptions& options);
+void add_split_options(CLI::App& verb, SplitSettings& options, const std::string& without_sigma);
+texture::DeviationLimits limits_of(const SplitSettings& options);
+std::unique_ptr<texture::Splitter> splitter_of(const SplitSettings& options);
 
-/// How the machine stands and how the workpiece lies in it.
-struct AxesOptions {
-  std::string branch = "positive";
-  std::string signs = "texturing";
-  std::vector<double> origin_mm = {0, 0, 0};
-  std::vector<double> tilt_deg = {0, 0};
-};
-void add_axes_options(CLI::App& verb, AxesOptions& options);
+void add_axes_options(CLI::App& verb, AxesSettings& options);
+texture::Clamping clamping_of(const AxesSettings& options);
+kinematics::Machine machine_of(const AxesSettings& options);
+kinematics::Branch branch_of(const AxesSettings& options);
 /// The axes of a split, which is laid into its clamping for that.
-Result<std::vector<texture::SevenAxes>> axes_of(const AxesOptions& options, const texture::Split& split);
+Result<std::vector<texture::SevenAxes>> axes_of(const AxesSettings& options, const texture::Split& split);
+
+/// How sigma is chosen where it is not given, where the spot rests, what the axes can do, servo period. Limits are
+/// gathered as text: "X=100,200,300".
+void add_motion_options(CLI::App& verb, FreeformJob& job, std::vector<std::string>& limits);
+Result<void> set_limits(const std::vector<std::string>& limits, MotionSettings& motion);
 
 /// The columns that every verb's --points has: i,x,y,z,xp,yp,zp,X,Y,Z,A,C,U,V,fod_um,bia_deg; W behind them where
 /// there is an axis for it.
@@ -102,7 +76,7 @@ Result<void> write_points(const std::string& file, const texture::Split& split,
 /// surface, points, step_um, sigma_um, tries, fod_um, bia_deg and displacement_mm as all verbs print them.
 Json split_json(const std::string& surface, const texture::TexturePath& path, const texture::Split& split);
 /// The same as lines for people; `how_sigma` stands behind sigma.
-std::string split_text(const texture::TexturePath& path, const texture::Split& split, const SplitOptions& options,
+std::string split_text(const texture::TexturePath& path, const texture::Split& split, const SplitSettings& options,
                        const std::string& how_sigma);
 
 }  // namespace gravure::cli

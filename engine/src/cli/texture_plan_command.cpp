@@ -3,72 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
+#include <utility>
 
-#include "gravure/kinematics/machines.hpp"
-#include "gravure/texture/best_sigma.hpp"
 #include "program_files.hpp"
 #include "texture_following.hpp"
-#include "texture_options.hpp"
+#include "texture_motion.hpp"
 
 namespace gravure::cli {
 namespace {
 
 constexpr double kUsPerS = 1e6;
-constexpr double kPercent = 100;
 
 struct Options {
-  TextureOptions texture;
-  SplitOptions split;
-  std::string points;
-  std::string rule = "time";
-  double share_percent = 0.5;
-  std::string stops;
-  double servo_us = 50;
+  FreeformJob job;
   std::vector<std::string> limits;
   ServoOptions servos;
+  std::string points;
   std::string trajectory;
   std::int64_t every = 20;
 };
-
-/// "X=100,200,300" into the limits.
-Result<void> set_limit(const std::string& text, texture::SevenLimits& limits) {
-  GRAVURE_TRY(const AxisSetting setting, axis_setting("--limit", text, "AXIS=SPEED,ACCELERATION,JERK"));
-  limits[setting.axis] = {setting.numbers[0], setting.numbers[1], setting.numbers[2]};
-  return {};
-}
-
-Result<texture::PathMachine> machine_of(const Options& options) {
-  texture::PathMachine machine;
-  machine.machine = kinematics::xyzac_machine(kinematics::XyzacSigns::texturing, kinematics::Vector3::Zero(), {});
-  machine.limits = texture::published_limits();
-  for (const std::string& limit : options.limits) {
-    GRAVURE_CHECK(set_limit(limit, machine.limits));
-  }
-  GRAVURE_CHECK(texture::check_limits(machine.limits));
-  const bool points = options.stops.empty() ? options.texture.hilbert_order != 0 : options.stops == "points";
-  machine.stops = points ? texture::Stops::points : texture::Stops::corners;
-  machine.servo_s = options.servo_us / kUsPerS;
-  return machine;
-}
-
-Result<texture::TimedSplit> timed_split(const Options& options, const texture::Surface& surface,
-                                        const texture::TexturePath& path, const texture::PathMachine& machine) {
-  const std::unique_ptr<texture::Splitter> splitter = splitter_of(options.split);
-  const texture::DeviationLimits limits = limits_of(options.split);
-  if (options.split.sigma_um) {
-    GRAVURE_TRY(texture::Split split, texture::split_path(*splitter, surface, path, limits,
-                                                          *options.split.sigma_um / kUmPerMm, cancel_token()));
-    return texture::time_split(std::move(split), path, machine, cancel_token());
-  }
-  if (options.rule == "time") {
-    return texture::split_by_time(*splitter, surface, path, limits, machine, options.share_percent / kPercent,
-                                  cancel_token());
-  }
-  GRAVURE_TRY(texture::Split split, texture::split_by_published_rule(*splitter, surface, path, limits, cancel_token()));
-  return texture::time_split(std::move(split), path, machine, cancel_token());
-}
 
 Result<void> write_trajectory(const Options& options, const PathMotion& motion) {
   constexpr std::int64_t kBlock = 16'384;
@@ -84,8 +38,8 @@ Result<void> write_trajectory(const Options& options, const PathMotion& motion) 
       if (at % options.every == 0 || at + 1 == instants) {
         const auto& a = block[k].axes;
         output.text() += fmt::format("{:.7f},{:.9f},{:.9f},{:.9f},{:.12f},{:.12f},{:.9f},{:.9f},{:.9f}\n",
-                                     static_cast<double>(at) * options.servo_us / kUsPerS, a[0], a[1], a[2], a[3], a[4],
-                                     a[5] + 0.0, a[6] + 0.0, block[k].along_mm);
+                                     static_cast<double>(at) * options.job.motion.servo_us / kUsPerS, a[0], a[1], a[2],
+                                     a[3], a[4], a[5] + 0.0, a[6] + 0.0, block[k].along_mm);
       }
     }
     if (!output.flush(false)) {
@@ -98,111 +52,64 @@ Result<void> write_trajectory(const Options& options, const PathMotion& motion) 
   return output.commit();
 }
 
-/// What is printed of the motion, each figure to what is the same on every machine.
-struct Outcome {
-  texture::ProvenPath seven;
-  texture::TimedPath five;
-  Following following;
-  std::vector<std::string> violations;
-  double ratio() const { return five.time_s / seven.path.time_s; }
-};
-
-double rounded(double value) {
-  constexpr double kDigits = 1e5;
-  return std::round(value * kDigits) / kDigits + 0.0;
+/// The stages alone on the same path.
+Result<texture::TimedPath> time_stages(const TimedTexture& seven) {
+  const std::span<const texture::SurfacePoint> targets = seven.timed.targets();
+  GRAVURE_TRY(const std::vector<texture::SevenAxes> stages_alone,
+              texture::seven_axes(seven.machine.machine, targets, targets, seven.machine.branch));
+  texture::PathTimingRequest request = seven.timed.request(seven.machine, seven.path);
+  request.axes = stages_alone;
+  return texture::time_five_axes(request, cancel_token());
 }
 
-/// Where a limit comes from: --limit of its axis, else published_limits().
-std::string_view limit_source(const Options& options, const texture::LimitUse& use) {
-  const bool stated = std::any_of(options.limits.begin(), options.limits.end(), [&use](const std::string& text) {
-    return text.substr(0, text.find('=')) == kPathAxes[use.axis];
-  });
-  return stated ? "stated" : texture::source_name(texture::source_of_published(use.axis, use.kind));
-}
-
-Json limits_json(const Options& options, const std::vector<texture::LimitUse>& uses, double servo_s) {
-  Json limits = Json::array();
-  for (const texture::LimitUse& use : uses) {
-    limits.push_back({{"axis", kPathAxes[use.axis]},
-                      {"kind", texture::limit_name(use.kind)},
-                      {"most", rounded(use.most)},
-                      {"allowed", use.allowed},
-                      {"source", limit_source(options, use)},
-                      {"share", rounded(use.share())},
-                      {"at_s", rounded(static_cast<double>(use.instant) * servo_s)}});
-  }
-  return limits;
-}
-
-void print_outcome(const Options& options, const texture::TexturePath& path, const texture::PathMachine& machine,
-                   const texture::TimedSplit& timed, const Outcome& outcome, const Command& command) {
-  const texture::TimedPath& seven = outcome.seven.path;
-  const char* stops = machine.stops == texture::Stops::points ? "points" : "corners";
+/// Each figure to what is the same on every machine.
+void print_outcome(const Options& options, const TimedTexture& seven, const texture::TimedPath& five,
+                   const Following& following, const std::vector<std::string>& violations, const Command& command) {
+  const texture::TimedPath& path = seven.proven.path;
+  const double ratio = five.time_s / path.time_s;
   if (command.json) {
-    Json json = split_json(surface_name(options.texture), path, timed.split);
-    json["stops"] = stops;
-    json["time_s"] = {{"seven_axis", rounded(seven.time_s)}, {"five_axis", rounded(outcome.five.time_s)}};
-    json["ratio"] = rounded(outcome.ratio());
-    json["runs"] = seven.runs;
-    json["slowed_runs"] = seven.slowed;
-    json["instants"] = seven.motion->instants();
-    json["servo_us"] = options.servo_us;
-    json["limits"] = limits_json(options, outcome.seven.uses, machine.servo_s);
-    json["following_error"] = following_json(outcome.following, machine.servo_s);
-    json["violations"] = outcome.violations;
+    Json json = split_json(surface_name(options.job.texture), seven.path, seven.timed.split);
+    json["stops"] = stops_name(seven.machine.stops);
+    json["time_s"] = {{"seven_axis", five_digits(path.time_s)}, {"five_axis", five_digits(five.time_s)}};
+    json["ratio"] = five_digits(ratio);
+    json["runs"] = path.runs;
+    json["slowed_runs"] = path.slowed;
+    json["instants"] = path.motion->instants();
+    json["servo_us"] = options.job.motion.servo_us;
+    json["limits"] = limits_json(options.job.motion, seven);
+    json["following_error"] = following_json(following, seven.machine.servo_s);
+    json["violations"] = violations;
     print_json(json);
     return;
   }
   std::string text =
-      split_text(path, timed.split, options.split,
-                 options.split.sigma_um || options.rule != "time"
-                     ? ""
-                     : fmt::format(", within {:.6g} % of the fastest of {}", options.share_percent, timed.tries));
-  text += fmt::format("seven axes    {:.3f} s, at rest at {}, {} of {} moves slowed for the stages\n", seven.time_s,
-                      stops, seven.slowed, seven.runs);
-  text += fmt::format("five axes     {:.3f} s, {:.3f} times as long\n", outcome.five.time_s, outcome.ratio());
-  for (const texture::LimitUse& use : outcome.seven.uses) {
-    text += fmt::format("limit         {} {:<12} {:6.2f} % at {:.4f} s of {:.6g} ({})\n", kPathAxes[use.axis],
-                        texture::limit_name(use.kind), use.share() * kPercent,
-                        static_cast<double>(use.instant) * machine.servo_s, use.allowed, limit_source(options, use));
-  }
-  text += following_text(outcome.following, machine.servo_s);
-  for (const std::string& violation : outcome.violations) {
+      split_text(seven.path, seven.timed.split, options.job.split, how_sigma(options.job.split, seven.timed));
+  text += seven_text(seven);
+  text += fmt::format("five axes     {:.3f} s, {:.3f} times as long\n", five.time_s, ratio);
+  text += limits_text(options.job.motion, seven) + following_text(following, seven.machine.servo_s);
+  for (const std::string& violation : violations) {
     text += "violation: " + violation + "\n";
   }
   print(text);
 }
 
-Result<int> plan(const Options& options, const Command& command) {
-  GRAVURE_CHECK(
-      refuse_overwrite({{"--points", options.points}, {"--trajectory", options.trajectory}}, {options.texture.path}));
-  GRAVURE_TRY(const texture::PathMachine machine, machine_of(options));
-  Outcome outcome;
-  GRAVURE_TRY(outcome.following, servos_of(options.servos));
-  GRAVURE_TRY(const std::unique_ptr<texture::Surface> surface, surface_of(options.texture));
-  GRAVURE_TRY(const texture::TexturePath path, path_of(options.texture));
-  GRAVURE_TRY(const texture::TimedSplit timed, timed_split(options, *surface, path, machine));
-  texture::PathTimingRequest request = timed.request(machine, path);
-  GRAVURE_TRY(outcome.seven, texture::prove_seven_axes(request, cancel_token()));
-  GRAVURE_TRY(const std::vector<texture::SevenAxes> stages_alone,
-              texture::seven_axes(machine.machine, timed.split.targets, timed.split.targets));
-  request.axes = stages_alone;
-  GRAVURE_TRY(outcome.five, texture::time_five_axes(request, cancel_token()));
-  GRAVURE_CHECK(predict(outcome.following, *outcome.seven.path.motion, machine));
-  outcome.violations = texture::violations(timed.split.most, limits_of(options.split));
-  for (const texture::LimitUse& use : texture::broken(outcome.seven.uses)) {
-    outcome.violations.push_back(fmt::format("axis {}: {} {:.6g}, allowed {:.6g}, at {:.4f} s", kPathAxes[use.axis],
-                                             texture::limit_name(use.kind), use.most, use.allowed,
-                                             static_cast<double>(use.instant) * machine.servo_s));
-  }
+Result<int> plan(Options options, const Command& command) {
+  GRAVURE_CHECK(refuse_overwrite({{"--points", options.points}, {"--trajectory", options.trajectory}},
+                                 inputs_of(options.job.texture)));
+  GRAVURE_CHECK(set_limits(options.limits, options.job.motion));
+  GRAVURE_TRY(Following following, servos_of(options.servos));
+  GRAVURE_TRY(const TimedTexture seven, time_texture(options.job));
+  GRAVURE_TRY(const texture::TimedPath five, time_stages(seven));
+  GRAVURE_CHECK(predict(following, *seven.proven.path.motion, seven.machine));
   if (!options.points.empty()) {
-    GRAVURE_CHECK(write_points(options.points, timed.split, timed.axes, options.split.focus_axis));
+    GRAVURE_CHECK(write_points(options.points, seven.timed.split, seven.timed.axes, options.job.split.focus_axis));
   }
   if (!options.trajectory.empty()) {
-    GRAVURE_CHECK(write_trajectory(options, *outcome.seven.path.motion));
+    GRAVURE_CHECK(write_trajectory(options, *seven.proven.path.motion));
   }
-  print_outcome(options, path, machine, timed, outcome, command);
-  return outcome.violations.empty() ? kDone : kLimitViolated;
+  const std::vector<std::string> violations = violations_of(options.job, seven);
+  print_outcome(options, seven, five, following, violations, command);
+  return violations.empty() ? kDone : kLimitViolated;
 }
 
 }  // namespace
@@ -210,20 +117,11 @@ Result<int> plan(const Options& options, const Command& command) {
 void add_texture_plan(CLI::App& texture, Command& command) {
   CLI::App* verb = add_verb(texture, command, "plan", "Time a path on a surface under the limits of all seven axes");
   const auto options = std::make_shared<Options>();
-  add_texture_options(*verb, options->texture);
-  add_split_options(*verb, options->split, "by --rule");
-  verb->add_option("--rule", options->rule, "time: the smallest that costs no time; published: the first of 30000 ...")
-      ->check(CLI::IsMember({"time", "published"}))
-      ->capture_default_str();
-  verb->add_option("--time-share-percent", options->share_percent, "How much longer than the fastest, for --rule time")
-      ->check(number_from(0, 1000))
-      ->capture_default_str();
-  verb->add_option("--stops", options->stops, "points or corners; left out: points of a Hilbert curve, else corners")
-      ->check(CLI::IsMember({"points", "corners"}));
-  verb->add_option("--limit", options->limits,
-                   "AXIS=SPEED,ACCELERATION,JERK of one axis, mm or rad per s, s^2, s^3; as often as needed");
+  add_texture_options(*verb, options->job.texture);
+  add_split_options(*verb, options->job.split, "by --rule");
+  add_axes_options(*verb, options->job.axes);
+  add_motion_options(*verb, options->job, options->limits);
   add_servo_options(*verb, options->servos);
-  add_length(*verb, "--servo-us", options->servo_us, 1e6, "Servo period")->capture_default_str();
   verb->add_option("--points", options->points, "CSV of every point, its stages' point, axes and deviations");
   verb->add_option("--trajectory", options->trajectory, "CSV of the set-points of all axes over time");
   verb->add_option("--every", options->every, "Every how many servo periods --trajectory has a line")

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -26,6 +27,10 @@ constexpr std::size_t kMostPathBytes = std::size_t{1} << 30U;
 constexpr std::size_t kMostPoints = 1'500'000;  // a point takes some 150 bytes at the peak
 constexpr double kPictureStep_um = 100;
 
+std::string place_of(const TextureSettings& options, const std::string& file) {
+  return (std::filesystem::path(options.folder) / file).lexically_normal().string();
+}
+
 Error named(const std::string& file, const Error& error) {
   return {error.code, file + ": " + error.message};
 }
@@ -41,12 +46,12 @@ Result<std::vector<Vector2>> read_path(const std::string& file) {
   return path;
 }
 
-Result<std::unique_ptr<texture::Surface>> height_field_of(const TextureOptions& options) {
+Result<std::unique_ptr<texture::Surface>> height_field_of(const TextureSettings& options) {
   if (!options.pixel_um) {
     return Error{ErrorCode::bad_argument, "--pixel-um is missing: the side of the pixels of --height-field"};
   }
   const ImageFiles files;
-  GRAVURE_TRY(const std::unique_ptr<ImageSource> picture, files.open(options.height_field, 0));
+  GRAVURE_TRY(const std::unique_ptr<ImageSource> picture, files.open(place_of(options, options.height_field), 0));
   texture::HeightScale scale;
   scale.pitch_x_mm = *options.pixel_um / kUmPerMm;
   scale.pitch_y_mm = options.pixel_y_um.value_or(*options.pixel_um) / kUmPerMm;
@@ -54,18 +59,20 @@ Result<std::unique_ptr<texture::Surface>> height_field_of(const TextureOptions& 
     scale.low_mm = options.height_mm[0];
     scale.high_mm = options.height_mm[1];
   } else if (picture->info().samples == SampleType::u16) {
-    return Error{ErrorCode::bad_argument, "--height-mm is missing: z of sample 0 and of sample 65535"};
+    return Error{ErrorCode::bad_argument,
+                 place_of(options, options.height_field) +
+                     ": has 16 bits: give --height-mm ([surface] height_mm), z of sample 0 and of sample 65535"};
   }
   GRAVURE_TRY(texture::HeightGrid grid, texture::read_height_grid(*picture, scale));
   auto surface = texture::height_field_surface(std::move(grid));
   if (!surface) {
-    return named(options.height_field, surface.error());
+    return named(place_of(options, options.height_field), surface.error());
   }
   return surface;
 }
 
-Result<std::unique_ptr<texture::Surface>> mesh_of(const TextureOptions& options) {
-  GRAVURE_TRY(const TriangleMesh mesh, read_triangle_mesh(options.mesh));
+Result<std::unique_ptr<texture::Surface>> mesh_of(const TextureSettings& options) {
+  GRAVURE_TRY(const TriangleMesh mesh, read_triangle_mesh(place_of(options, options.mesh)));
   std::vector<texture::Vector3> vertices;
   vertices.reserve(mesh.vertices_mm.size());
   for (const Point3& each : mesh.vertices_mm) {
@@ -73,25 +80,27 @@ Result<std::unique_ptr<texture::Surface>> mesh_of(const TextureOptions& options)
   }
   auto surface = texture::mesh_surface(vertices, mesh.triangles);
   if (!surface) {
-    return named(options.mesh, surface.error());
+    return named(place_of(options, options.mesh), surface.error());
   }
   return surface;
 }
 
 /// The picture as a layer of a job on a cylinder.
-Result<LayerStack> picture_stack(const TextureOptions& options, const ImageOpener& files) {
-  GRAVURE_TRY(const std::unique_ptr<ImageSource> picture, files.open(options.bitmap, 0));
+Result<LayerStack> picture_stack(const TextureSettings& options, const ImageOpener& files) {
+  const std::string file = place_of(options, options.bitmap);
+  GRAVURE_TRY(const std::unique_ptr<ImageSource> picture, files.open(file, 0));
   const ImageInfo& info = picture->info();
   if (options.fires.empty()) {
     return Error{ErrorCode::bad_argument, "--fires is missing: which pixels of --bitmap fire, white or black"};
   }
   if ((info.samples != SampleType::bit) != options.threshold.has_value()) {
     return Error{ErrorCode::bad_argument,
-                 options.bitmap + (options.threshold ? ": is bilevel: leave --threshold out"
-                                                     : ": is grey: give --threshold, the least sample that is white")};
+                 file + (options.threshold ? ": is bilevel: leave --threshold ([texture] threshold) out"
+                                           : ": is grey: give --threshold ([texture] threshold), the least sample "
+                                             "that is white")};
   }
   LayerStack stack;
-  stack.layers.push_back({options.bitmap, 0, 0});
+  stack.layers.push_back({file, 0, 0});
   stack.lines = info.height;
   stack.pixels = info.width;
   stack.samples = info.samples;
@@ -102,7 +111,7 @@ Result<LayerStack> picture_stack(const TextureOptions& options, const ImageOpene
   return stack;
 }
 
-texture::PictureGrid grid_of(const TextureOptions& options, const LayerStack& stack) {
+texture::PictureGrid grid_of(const TextureSettings& options, const LayerStack& stack) {
   const double pitch_um = options.pitch_um.value_or(0);
   return {.columns = stack.pixels,
           .rows = stack.lines,
@@ -112,12 +121,13 @@ texture::PictureGrid grid_of(const TextureOptions& options, const LayerStack& st
           .step_mm = options.step_um.value_or(kPictureStep_um) / kUmPerMm};
 }
 
-Result<texture::TexturePath> drawing_path_of(const TextureOptions& options) {
+Result<texture::TexturePath> drawing_path_of(const TextureSettings& options) {
   if (!options.step_um) {
     return Error{ErrorCode::bad_argument, "--step-um is missing: how far apart the points of the path are to be taken"};
   }
-  GRAVURE_TRY(const std::string text, read_file(options.svg, kMostPathBytes));
-  GRAVURE_TRY(const std::vector<SvgStroke> drawing, parse_svg(text, options.svg, options.tolerance_um / kUmPerMm));
+  const std::string file = place_of(options, options.svg);
+  GRAVURE_TRY(const std::string text, read_file(file, kMostPathBytes));
+  GRAVURE_TRY(const std::vector<SvgStroke> drawing, parse_svg(text, file, options.tolerance_um / kUmPerMm));
   std::vector<std::vector<Vector2>> strokes;
   for (const SvgStroke& each : drawing) {
     std::vector<Vector2>& stroke = strokes.emplace_back();
@@ -127,21 +137,21 @@ Result<texture::TexturePath> drawing_path_of(const TextureOptions& options) {
   }
   auto path = texture::stroke_path(strokes, *options.step_um / kUmPerMm, kMostPoints);
   if (!path) {
-    return named(options.svg, path.error());
+    return named(file, path.error());
   }
   return path;
 }
 
-Result<texture::TexturePath> file_path_of(const TextureOptions& options) {
+Result<texture::TexturePath> file_path_of(const TextureSettings& options) {
   if (!options.step_um) {
     return Error{ErrorCode::bad_argument, "--step-um is missing: how far apart the points of the path are to be taken"};
   }
   texture::TexturePath path;
   path.step_mm = *options.step_um / kUmPerMm;
-  GRAVURE_TRY(const std::vector<Vector2> corners, read_path(options.path));
+  GRAVURE_TRY(const std::vector<Vector2> corners, read_path(place_of(options, options.path)));
   auto points = texture::resample(corners, path.step_mm, kMostPoints);
   if (!points) {
-    return named(options.path, points.error());
+    return named(place_of(options, options.path), points.error());
   }
   path.points_mm = std::move(points).value();
   return path;
@@ -149,21 +159,36 @@ Result<texture::TexturePath> file_path_of(const TextureOptions& options) {
 
 }  // namespace
 
-std::vector<std::string> inputs_of(const TextureOptions& options) {
-  std::vector<std::string> inputs;
-  for (const std::string* each : {&options.path, &options.svg, &options.height_field, &options.mesh, &options.bitmap}) {
+std::vector<std::string*> files_of(TextureSettings& options) {
+  std::vector<std::string*> files;
+  for (std::string* each : {&options.height_field, &options.mesh, &options.path, &options.svg, &options.bitmap}) {
     if (!each->empty()) {
-      inputs.push_back(*each);
+      files.push_back(each);
     }
+  }
+  return files;
+}
+
+std::vector<std::string> inputs_of(TextureSettings options) {
+  std::vector<std::string> inputs;
+  for (const std::string* each : files_of(options)) {
+    inputs.push_back(place_of(options, *each));
   }
   return inputs;
 }
 
-const std::string& surface_name(const TextureOptions& options) {
+const std::string& surface_name(const TextureSettings& options) {
   return !options.surface.empty() ? options.surface : !options.mesh.empty() ? options.mesh : options.height_field;
 }
 
-Result<std::unique_ptr<texture::Surface>> surface_of(const TextureOptions& options) {
+std::string texture_name(const TextureSettings& options) {
+  return !options.bitmap.empty() ? options.bitmap
+         : !options.svg.empty()  ? options.svg
+         : !options.path.empty() ? options.path
+                                 : fmt::format("Hilbert curve of order {}", options.hilbert_order);
+}
+
+Result<std::unique_ptr<texture::Surface>> surface_of(const TextureSettings& options) {
   const int given = static_cast<int>(!options.surface.empty()) + static_cast<int>(!options.height_field.empty()) +
                     static_cast<int>(!options.mesh.empty());
   if (given != 1) {
@@ -179,7 +204,7 @@ Result<std::unique_ptr<texture::Surface>> surface_of(const TextureOptions& optio
   return texture::limit_slope(std::move(surface).value(), options.max_slope_deg / kDegreesPerRad);
 }
 
-Result<texture::PictureGrid> picture_grid_of(const TextureOptions& options) {
+Result<texture::PictureGrid> picture_grid_of(const TextureSettings& options) {
   if (!options.pitch_um) {
     return Error{ErrorCode::bad_argument, "--pitch-um is missing: how far apart the pixels of --bitmap are"};
   }
@@ -188,14 +213,14 @@ Result<texture::PictureGrid> picture_grid_of(const TextureOptions& options) {
   return grid_of(options, stack);
 }
 
-Result<PathPulses> picture_pulses_of(const TextureOptions& options) {
+Result<PathPulses> picture_pulses_of(const TextureSettings& options) {
   const ImageFiles files;
   GRAVURE_TRY(const LayerStack stack, picture_stack(options, files));
   LayerReader lines(stack, files, 0);
   return texture::picture_pulses(grid_of(options, stack), lines, cancel_token());
 }
 
-Result<texture::TexturePath> path_of(const TextureOptions& options) {
+Result<texture::TexturePath> path_of(const TextureSettings& options) {
   const int given = static_cast<int>(options.hilbert_order != 0) + static_cast<int>(!options.path.empty()) +
                     static_cast<int>(!options.svg.empty()) + static_cast<int>(!options.bitmap.empty());
   if (given != 1) {

@@ -10,6 +10,8 @@
 #include <string_view>
 
 #include "error_budget_text.hpp"
+#include "freeform_job.hpp"
+#include "freeform_program.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/job_file.hpp"
@@ -19,7 +21,6 @@
 #include "gravure/twin/unroll.hpp"
 #include "gravure/twin/verify.hpp"
 #include "job_loader.hpp"
-#include "path_program.hpp"
 #include "program_files.hpp"
 #include "program_verification.hpp"
 #include "report_writer.hpp"
@@ -170,7 +171,7 @@ Result<int> verify_program(const std::string& path, const Options& options, cons
       if (!options.html.empty()) {
         return Error{ErrorCode::bad_argument, "--html: a program that follows a path has no page; leave it out"};
       }
-      return verify_path_program(*program, {}, command);
+      return verify_path_file(path, options.images, command);
     }
   }
   GRAVURE_TRY(VerifiedProgram verified, verify_program_file(path, options.images, command));
@@ -232,6 +233,12 @@ Result<int> verify_job(const Options& options, const Command& command) {
     return Error{ErrorCode::io, "cannot make a temporary folder: set TMPDIR to a folder with room for the program"};
   }
   const std::string path = folder.path() + "/job.grv";
+  if (is_freeform_job(options.input)) {
+    GRAVURE_TRY(const FreeformJob job, read_freeform_job(options.input));
+    GRAVURE_TRY(const PlannedTexture planned, plan_texture(job));
+    GRAVURE_CHECK(compile_texture(job, planned, path, {}));
+    return verify_program(path, options, command);
+  }
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.input, files, true));
   GRAVURE_CHECK(compile_job(loaded, files, {path, {}, {}, false}, command));

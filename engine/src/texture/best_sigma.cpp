@@ -16,7 +16,7 @@ bool within(const DeviationSummary& most, const DeviationLimits& limits) {
 
 PathTimingRequest TimedSplit::request(const PathMachine& machine, const TexturePath& path) const {
   PathTimingRequest request;
-  request.targets = split.targets;
+  request.targets = targets();
   request.axes = axes;
   request.pulse_mm = pulse_mm;
   request.limits = machine.limits;
@@ -35,7 +35,13 @@ Result<TimedSplit> time_split(Split split, const TexturePath& path, const PathMa
   TimedSplit timed;
   timed.split = std::move(split);
   GRAVURE_CHECK(rotary_table(machine.machine));
-  GRAVURE_TRY(timed.axes, seven_axes(machine.machine, timed.split.targets, timed.split.stages));
+  if (machine.clamping.about_x_rad != 0 || machine.clamping.about_y_rad != 0) {
+    Split lying = clamped(timed.split, machine.clamping);
+    GRAVURE_TRY(timed.axes, seven_axes(machine.machine, lying.targets, lying.stages, machine.branch));
+    timed.lying = std::move(lying.targets);
+  } else {
+    GRAVURE_TRY(timed.axes, seven_axes(machine.machine, timed.split.targets, timed.split.stages, machine.branch));
+  }
   timed.pulse_mm = pulse_lengths_mm(path, timed.split.targets);
   GRAVURE_TRY(timed.timed, time_seven_axes(timed.request(machine, path), cancel));
   timed.fastest_s = timed.timed.time_s;

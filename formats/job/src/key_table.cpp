@@ -31,50 +31,38 @@ constexpr std::array kSections = std::to_array<std::string_view>({"job",
                                                                   "twin.thermal"});
 constexpr std::array<std::string_view, 1> kParents = {"twin"};
 constexpr std::array<std::string_view, 3> kModes = {"rotary", "helical", "flat"};  // as Mode counts them
-constexpr std::array<std::string_view, 2> kLaterModes = {"freeform", "zones"};
+constexpr std::array<std::string_view, 2> kOtherModes = {"freeform", "zones"};
 constexpr std::array<std::string_view, 2> kFires = {"white", "black"};
 constexpr std::array<std::string_view, 2> kLinesAlong = {"rows", "columns"};
 constexpr std::array<std::string_view, 3> kOrders = {"sequence", "cycle", "hold"};
 
-constexpr std::string_view kRequired = "required";
-
-constexpr Presence presence_of(std::string_view fallback) {
-  return fallback == kRequired ? Presence::required : Presence::optional;
+constexpr Key integer(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
+                      std::string_view high, std::string_view fallback, Store store) {
+  return {{section, key, Type::integer, unit, low, high, {}, presence_of(fallback), fallback}, store};
 }
 
-constexpr KeySpec integer(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
-                          std::string_view high, std::string_view fallback, Store store) {
-  return {section, key, Type::integer, unit, low, high, {}, presence_of(fallback), fallback, store};
+constexpr Key decimal(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
+                      std::string_view high, std::string_view fallback, Store store) {
+  return {{section, key, Type::decimal, unit, low, high, {}, presence_of(fallback), fallback}, store};
 }
 
-constexpr KeySpec decimal(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
-                          std::string_view high, std::string_view fallback, Store store) {
-  return {section, key, Type::decimal, unit, low, high, {}, presence_of(fallback), fallback, store};
+constexpr Key on_off(std::string_view section, std::string_view fallback, Store store) {
+  return {{section, "enabled", Type::boolean, "", "", "", {}, Presence::optional, fallback}, store};
 }
 
-constexpr KeySpec on_off(std::string_view section, std::string_view fallback, Store store) {
-  return {section, "enabled", Type::boolean, "", "", "", {}, Presence::optional, fallback, store};
+constexpr Key word(std::string_view section, std::string_view key, std::span<const std::string_view> words,
+                   std::string_view fallback, Store store) {
+  return {{section, key, Type::word, "", "", "", words, presence_of(fallback), fallback}, store};
 }
 
-constexpr KeySpec word(std::string_view section, std::string_view key, std::span<const std::string_view> words,
-                       std::string_view fallback, Store store) {
-  return {section, key, Type::word, "", "", "", words, presence_of(fallback), fallback, store};
-}
-
-constexpr KeySpec other(std::string_view section, std::string_view key, Type type, std::string_view fallback,
-                        Store store) {
-  return {section, key, type, "", "", "", {}, presence_of(fallback), fallback, store};
+constexpr Key other(std::string_view section, std::string_view key, Type type, std::string_view fallback, Store store) {
+  return {{section, key, type, "", "", "", {}, presence_of(fallback), fallback}, store};
 }
 
 /// The same key, present or not as other keys decide.
-constexpr KeySpec decided(KeySpec spec) {
+constexpr Key decided(Key spec) {
   spec.presence = Presence::decided;
   return spec;
-}
-
-template <class Enum>
-Enum enum_of(std::span<const std::string_view> words, const Value& value) {
-  return static_cast<Enum>(std::find(words.begin(), words.end(), value.text) - words.begin());
 }
 
 constexpr std::string_view kOneOfSizes = "one of diameter_mm, circumference_mm";
@@ -166,19 +154,11 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.rotary.encoder_lines = v.integer; }),
     integer("rotary", "interpolation_bits", "bits", "0", "32", kRequired,
             [](Job& j, const Value& v) { j.rotary.interpolation_bits = static_cast<int>(v.integer); }),
-    KeySpec{"rotary",
-            "gear",
-            Type::two_integers,
-            "turns",
-            "1",
-            "1_000_000",
-            {},
-            Presence::optional,
-            "[1, 1]",
-            [](Job& j, const Value& v) {
-              j.rotary.gear_encoder_turns = v.items[0].integer;
-              j.rotary.gear_workpiece_turns = v.items[1].integer;
-            }},
+    Key{{"rotary", "gear", Type::two_integers, "turns", "1", "1_000_000", {}, Presence::optional, "[1, 1]"},
+        [](Job& j, const Value& v) {
+          j.rotary.gear_encoder_turns = v.items[0].integer;
+          j.rotary.gear_workpiece_turns = v.items[1].integer;
+        }},
     integer("rotary", "max_ab_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.rotary.max_ab_hz = v.integer; }),
     decimal("rotary", "start_angle_deg", "deg", "-360", "360", "0",
@@ -291,22 +271,9 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.twin.thermal.expansion_um_per_m_k = v.number; }),
 };
 
-std::string either(std::span<const std::string_view> words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    text += i == 0 ? "" : i + 1 == words.size() ? " or " : ", ";
-    text += "\"" + std::string(words[i]) + "\"";
-  }
-  return text;
-}
-
-std::string with_unit(const std::string& text, std::string_view unit) {
-  return unit.empty() ? text : text + " " + std::string(unit);
-}
-
 }  // namespace
 
-std::span<const KeySpec> key_table() {
+std::span<const Key> key_table() {
   return kTable;
 }
 
@@ -322,8 +289,8 @@ bool section_is_optional(std::string_view section) {
   return section == "machine" || section == "repeat" || section.substr(0, 5) == "twin.";
 }
 
-std::span<const std::string_view> later_modes() {
-  return kLaterModes;
+std::span<const std::string_view> other_modes() {
+  return kOtherModes;
 }
 
 std::optional<Mode> mode_of(std::string_view word) {
@@ -338,49 +305,10 @@ bool section_is_of(std::string_view section, Mode mode) {
   return section == "stage" ? mode == Mode::flat : section != "rotary" || mode != Mode::flat;
 }
 
-const KeySpec* find_key(std::string_view section, std::string_view key) {
+const Key* find_key(std::string_view section, std::string_view key) {
   const auto found = std::find_if(kTable.begin(), kTable.end(),
-                                  [&](const KeySpec& spec) { return spec.section == section && spec.key == key; });
+                                  [&](const Key& spec) { return spec.section == section && spec.key == key; });
   return found == kTable.end() ? nullptr : &*found;
-}
-
-std::string range_text(const KeySpec& spec) {
-  switch (spec.type) {
-    case Type::boolean:
-      return "true or false";
-    case Type::integer:
-    case Type::decimal:
-    case Type::two_integers:
-      return std::string(spec.low) + " to " + std::string(spec.high);
-    case Type::title:
-      return "at most " + std::to_string(kMaxTitleBytes) + " bytes, no control characters";
-    case Type::path:
-    case Type::paths:
-      return "1 to " + std::to_string(kMaxPathBytes) + " bytes, no control characters";
-    case Type::word:
-      return either(spec.words);
-  }
-  return "";
-}
-
-std::string expectation(const KeySpec& spec) {
-  switch (spec.type) {
-    case Type::boolean:
-    case Type::word:
-      return range_text(spec);
-    case Type::integer:
-      return with_unit("an integer from " + range_text(spec), spec.unit);
-    case Type::decimal:
-      return with_unit("a number from " + range_text(spec), spec.unit);
-    case Type::two_integers:
-      return "[encoder turns, workpiece turns], two integers from " + range_text(spec);
-    case Type::title:
-    case Type::path:
-      return "a string of " + range_text(spec);
-    case Type::paths:
-      return "a list of one or more file patterns such as [\"layers/*.tif\"], each " + range_text(spec);
-  }
-  return "";
 }
 
 }  // namespace gravure::job_file

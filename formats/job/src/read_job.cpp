@@ -4,8 +4,10 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <system_error>
 
+#include "gravure/formats/freeform_job.hpp"
 #include "gravure/formats/job_file.hpp"
 
 namespace gravure {
@@ -24,9 +26,7 @@ Error too_large(const std::string& path, std::size_t size) {
           path + ": " + std::to_string(size) + " bytes: a job file has at most " + std::to_string(kMaxJobBytes)};
 }
 
-}  // namespace
-
-Result<Job> read_job(const std::string& path) {
+Result<std::string> read_job_text(const std::string& path) {
   struct stat status = {};
   if (stat(path.c_str(), &status) != 0) {
     return Error{ErrorCode::bad_file, path + ": cannot be opened: " + reason() + "; give the path of a job file"};
@@ -47,7 +47,24 @@ Result<Job> read_job(const std::string& path) {
   if (std::ferror(file.get()) != 0) {
     return Error{ErrorCode::io, path + ": reading broke off: " + reason()};
   }
+  return text;
+}
+
+}  // namespace
+
+Result<Job> read_job(const std::string& path) {
+  GRAVURE_TRY(const std::string text, read_job_text(path));
   return parse_job(text, path);
+}
+
+Result<FreeformJob> read_freeform_job(const std::string& path) {
+  GRAVURE_TRY(const std::string text, read_job_text(path));
+  return parse_freeform_job(text, path);
+}
+
+std::optional<Mode> mode_of_job(const std::string& path) {
+  const Result<std::string> text = read_job_text(path);
+  return text ? mode_of_job_text(text.value()) : std::nullopt;
 }
 
 }  // namespace gravure

@@ -173,9 +173,9 @@ const Refusal kContradictions[] = {
      "revolutions ",
      "[image] revolutions = 100: contradicts levels = 99 (line 34); order = \"sequence\" needs one layer per "
      "revolution; say order = \"cycle\" or \"hold\", or make them equal"},
-    {"ModeOfALaterVersion", "\"rotary\"", "\"zones\"", kBad, "\"zones\"",
-     "[job] mode = \"zones\": this version runs \"rotary\", \"helical\" or \"flat\" only; \"freeform\" and \"zones\" "
-     "need a later one"},
+    {"ModeWithKeysOfItsOwn", "\"rotary\"", "\"freeform\"", kBad, "\"freeform\"",
+     "[job] mode = \"freeform\": must be \"rotary\", \"helical\" or \"flat\" here; plan, compile and verify take "
+     "\"freeform\" as well"},
     {"CarriageOfARotaryJob", "[image]", "[carriage]\nlayers = 0\n[image]", kBad, "[carriage]",
      "[carriage]: only mode = \"helical\" has this section, not mode = \"rotary\": take it out, or set that mode"},
     {"StageOfARotaryJob", "[image]", "[stage]\nlines = 10\n[image]", kBad, "[stage]",

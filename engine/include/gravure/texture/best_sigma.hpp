@@ -1,7 +1,9 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "gravure/texture/clamping.hpp"
 #include "gravure/texture/path_timing.hpp"
 #include "gravure/texture/split.hpp"
 #include "gravure/texture/splitter.hpp"
@@ -14,16 +16,21 @@ struct PathMachine {
   SevenLimits limits;
   Stops stops = Stops::corners;
   double servo_s = 50e-6;
+  kinematics::Branch branch = kinematics::Branch::positive;  ///< sign of A
+  Clamping clamping = {};                                    ///< how the workpiece lies
 };
 
 /// A split with the axes and times that follow from it.
 struct TimedSplit {
-  Split split;
+  Split split;                      ///< as it was made, on the surface as it is given
+  std::vector<SurfacePoint> lying;  ///< its targets in the clamping; empty: it lies level
   std::vector<SevenAxes> axes;
   std::vector<double> pulse_mm;
   TimedPath timed;
   double fastest_s = 0;  ///< of all sigmas that were looked at
   int tries = 0;         ///< sigmas that were timed
+  /// The points of the texture where the machine finds them.
+  std::span<const SurfacePoint> targets() const noexcept { return lying.empty() ? split.targets : lying; }
   /// For time_seven_axes() and prove_seven_axes(); refers to this.
   PathTimingRequest request(const PathMachine& machine, const TexturePath& path) const;
 };

@@ -1,0 +1,156 @@
+#include "freeform_job.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "freeform_program.hpp"
+#include "gravure/formats/image_files.hpp"
+#include "gravure/formats/plan_json.hpp"
+#include "path_program.hpp"
+#include "plan_text.hpp"
+#include "program_files.hpp"
+
+namespace gravure::cli {
+namespace {
+
+/// What a program can be held against beside itself.
+struct Evidence {
+  std::optional<WantedTexture> wanted;
+  std::vector<std::string> notes;
+  std::vector<std::string> violations;
+};
+
+/// Puts each file of the job where it lies now; says of those that are not there or not the same.
+bool find_files(const ProgramHeader& header, const std::string& path, const std::string& folder,
+                TextureSettings& settings, Evidence& evidence) {
+  bool all = true;
+  const std::vector<std::string*> names = files_of(settings);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool is_known = i < header.sources.size() && header.sources[i].path == *names[i];
+    const std::string place = is_known ? locate_source(header.sources[i], header, path, folder) : "";
+    if (place.empty()) {
+      evidence.notes.push_back(*names[i] + " not found: points and limits are those that the program stores");
+      all = false;
+      continue;
+    }
+    const Result<std::string> hash = sha256_file(place);
+    if (hash && hash.value() != header.sources[i].sha256) {
+      evidence.notes.push_back(place + " is not the file that was compiled (other SHA-256)");
+    }
+    *names[i] = place;
+  }
+  settings.folder.clear();
+  return all;
+}
+
+/// The job text in a program must lead to the very plan that stands in it.
+void hold_plan(const FreeformJob& job, const ProgramHeader& header, Evidence& evidence) {
+  const Result<Plan> again = plan_of(job, *evidence.wanted, set_points_of(header.plan));
+  if (!again || plan_to_json(again.value()) != plan_to_json(header.plan)) {
+    evidence.violations.push_back("the program's plan is not the one its job leads to: compile again");
+  }
+}
+
+Result<Evidence> evidence_of(const ProgramHeader& header, const std::string& path, const std::string& folder) {
+  Evidence evidence;
+  if (header.job_text.empty() || header.plan.mode != Mode::freeform) {
+    return evidence;
+  }
+  GRAVURE_TRY(FreeformJob job, parse_freeform_job(header.job_text, header.job_path));
+  const FreeformJob as_given = job;
+  if (!find_files(header, path, folder, job.texture, evidence)) {
+    return evidence;
+  }
+  GRAVURE_TRY(evidence.wanted, wanted_of(job));
+  if (evidence.wanted->pulses.count != header.plan.path->pulses) {
+    evidence.violations.push_back(fmt::format("the job's files lead to {} pulses, the program has {}: compile again",
+                                              evidence.wanted->pulses.count, header.plan.path->pulses));
+    evidence.wanted.reset();
+    return evidence;
+  }
+  hold_plan(as_given, header, evidence);
+  return evidence;
+}
+
+Json planned_json(const FreeformJob& job, const PlannedTexture& planned, const std::vector<std::string>& violations) {
+  const TimedTexture& texture = planned.texture;
+  Json json = Json::parse(plan_to_json(planned.plan));
+  Json split = split_json(surface_name(job.texture), texture.path, texture.timed.split);
+  split["method"] = job.split.method;
+  split["stops"] = stops_name(texture.machine.stops);
+  split["time_s"] = five_digits(texture.proven.path.time_s);
+  split["runs"] = texture.proven.path.runs;
+  split["slowed_runs"] = texture.proven.path.slowed;
+  split["limits"] = limits_json(job.motion, texture);
+  json["texture"] = split;
+  json["violations"] = violations;
+  return json;
+}
+
+}  // namespace
+
+bool is_freeform_job(const std::string& path) {
+  return mode_of_job(path) == Mode::freeform;
+}
+
+Result<int> plan_freeform_job(const std::string& path, const Command& command) {
+  GRAVURE_TRY(const FreeformJob job, read_freeform_job(path));
+  GRAVURE_TRY(const PlannedTexture planned, plan_texture(job));
+  const std::vector<std::string> violations = violations_of(job, planned.texture);
+  if (command.json) {
+    print_json(planned_json(job, planned, violations));
+  } else {
+    std::string text = plan_text(planned.plan);
+    text += split_text(planned.texture.path, planned.texture.timed.split, job.split,
+                       how_sigma(job.split, planned.texture.timed));
+    text += seven_text(planned.texture) + limits_text(job.motion, planned.texture);
+    for (const std::string& violation : violations) {
+      text += "violation: " + violation + "\n";
+    }
+    print(text);
+  }
+  return violations.empty() ? kDone : kLimitViolated;
+}
+
+Result<int> compile_freeform_job(const FreeformJob& job, const std::string& output, const GrvOptions& grv,
+                                 const Command& command) {
+  GRAVURE_TRY(const PlannedTexture planned, plan_texture(job));
+  GRAVURE_TRY(const CompiledPath made, compile_texture(job, planned, output, grv));
+  const PathSpacing& spacing = made.spacing;
+  const Plan& plan = made.header.plan;
+  if (command.json) {
+    print_json({{"program", output},
+                {"time_s", to_double(plan.job.duration_s)},
+                {"periods", plan.rotary.lines_per_revolution},
+                {"sigma_um", figure(planned.texture.timed.split.sigma_mm * kUmPerMm)},
+                {"proofs", planned.texture.proven.proofs},
+                {"pulses", spacing.pulses},
+                {"fired_pulses", spacing.fired},
+                {"spacing_um", {{"max", spacing.max_error_um}, {"rms", spacing.rms_error_um}}},
+                {"half_slot_um", spacing.half_slot_um},
+                {"max_speed_mm_s", spacing.max_speed_mm_s},
+                {"least_slots", spacing.least_slots}});
+    return kDone;
+  }
+  print(fmt::format(
+      "{}: {:.3f} s in {} periods of {} us; {} of {} pulses fire\n"
+      "spacing: {:.4g} um off at most, {:.4g} rms, half a slot {:.4g}; spot at most {:.4g} mm/s\n",
+      output, to_double(plan.job.duration_s), plan.rotary.lines_per_revolution, job.motion.servo_us, spacing.fired,
+      spacing.pulses, spacing.max_error_um, spacing.rms_error_um, spacing.half_slot_um, spacing.max_speed_mm_s));
+  return kDone;
+}
+
+Result<int> verify_path_file(const std::string& path, const std::string& folder, const Command& command) {
+  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
+  GRAVURE_TRY(const Evidence evidence, evidence_of(program->header(), path, folder));
+  VerifyPathOptions options;
+  if (evidence.wanted) {
+    options.wanted = &evidence.wanted->pulses;
+    options.targets = evidence.wanted->targets;
+  }
+  return verify_path_program(*program, options, evidence.violations, evidence.notes, command);
+}
+
+}  // namespace gravure::cli

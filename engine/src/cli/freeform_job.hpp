@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gravure/core/program.hpp"
+#include "gravure/formats/freeform_job.hpp"
+#include "gravure/formats/grv.hpp"
+#include "verb.hpp"
+
+// Jobs of mode "freeform", as `plan`, `compile` and `verify` take them.
+
+namespace gravure::cli {
+
+/// Is the file a freeform job, as far as can be told?
+bool is_freeform_job(const std::string& path);
+
+/// `plan JOB`.
+Result<int> plan_freeform_job(const std::string& path, const Command& command);
+
+/// `compile JOB` and `texture compile`, which says what a job would.
+Result<int> compile_freeform_job(const FreeformJob& job, const std::string& output, const GrvOptions& grv,
+                                 const Command& command);
+
+/// `verify PROGRAM` of one that was made from a freeform job, with what the job asks for where its sources are at hand,
+/// and of any other that follows a path. Sources are sought at the job's paths, or below `folder`.
+Result<int> verify_path_file(const std::string& path, const std::string& folder, const Command& command);
+
+}  // namespace gravure::cli

@@ -1,0 +1,240 @@
+#include "src/freeform_keys.hpp"
+
+#include <numbers>
+
+namespace gravure::freeform_file {
+namespace {
+
+using Store = void (*)(FreeformJob&, const Value&);
+using Bound = std::optional<double> GivenBounds::*;
+
+constexpr std::array kSections =
+    std::to_array<std::string_view>({"job", "laser", "fpga", "surface", "texture", "split", "limits", "clamping",
+                                     "motion", "axis.X", "axis.Y", "axis.Z", "axis.A", "axis.C", "axis.U", "axis.V"});
+constexpr std::array<std::string_view, 1> kParents = {"axis"};
+constexpr std::array<std::string_view, 1> kModes = {"freeform"};
+constexpr std::array<std::string_view, 2> kFires = {"white", "black"};
+
+constexpr std::string_view kBiggestHz = "10_000_000_000";
+constexpr std::string_view kLeast = "0.000_001";
+constexpr std::string_view kMostUm = "1_000_000_000";
+constexpr std::string_view kMostMm = "1_000_000";
+constexpr std::string_view kOneSurface = "one of expression, height_field, mesh";
+constexpr std::string_view kOneTexture = "one of hilbert_order, path, svg, bitmap";
+constexpr std::string_view kTableOne = "that of [A] table 1";
+constexpr std::string_view kMostSpeed = "1_000_000_000";
+constexpr std::string_view kMostAcceleration = "1_000_000_000_000";
+constexpr std::string_view kMostJerk = "1_000_000_000_000_000_000";
+
+constexpr Key integer(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
+                      std::string_view high, std::string_view fallback, Store store) {
+  return {{section, key, Type::integer, unit, low, high, {}, presence_of(fallback), fallback}, store};
+}
+
+constexpr Key decimal(std::string_view section, std::string_view key, std::string_view unit, std::string_view high,
+                      std::string_view fallback, Store store, std::string_view low = kLeast) {
+  return {{section, key, Type::decimal, unit, low, high, {}, presence_of(fallback), fallback}, store};
+}
+
+constexpr Key word(std::string_view section, std::string_view key, std::span<const std::string_view> words,
+                   std::string_view fallback, Store store) {
+  return {{section, key, Type::word, "", "", "", words, presence_of(fallback), fallback}, store};
+}
+
+constexpr Key text(std::string_view section, std::string_view key, Type type, std::string_view fallback, Store store) {
+  return {{section, key, type, "", "", "", {}, presence_of(fallback), fallback}, store};
+}
+
+/// The same key, present or not as other keys decide.
+constexpr Key decided(Key key) {
+  key.presence = Presence::decided;
+  return key;
+}
+
+template <std::size_t axis, Bound bound>
+void store_bound(FreeformJob& job, const Value& value) {
+  const bool turns = kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
+  job.motion.limits[axis].*bound = to_double(value.number) * (turns ? std::numbers::pi / 180 : 1);
+}
+
+template <std::size_t axis, Bound bound>
+constexpr Key axis_key(std::string_view section, std::string_view key, std::string_view unit, std::string_view most) {
+  return decimal(section, key, unit, most, kTableOne, store_bound<axis, bound>);
+}
+
+std::vector<double> numbers_of(const Value& value) {
+  std::vector<double> numbers;
+  for (const Value& item : value.items) {
+    numbers.push_back(to_double(item.number));
+  }
+  return numbers;
+}
+
+constexpr Bound kSpeed = &GivenBounds::speed;
+constexpr Bound kAcceleration = &GivenBounds::acceleration;
+constexpr Bound kJerk = &GivenBounds::jerk;
+
+constexpr std::array kTable = {
+    text("job", "title", Type::title, "\"\"", [](FreeformJob& j, const Value& v) { j.job.title = v.text; }),
+    word("job", "mode", kModes, kRequired, [](FreeformJob& j, const Value&) { j.job.mode = Mode::freeform; }),
+
+    integer("laser", "seed_hz", "Hz", "1", kBiggestHz, kRequired,
+            [](FreeformJob& j, const Value& v) { j.job.laser.seed_hz = v.integer; }),
+    integer("laser", "pulse_divider", "seed pulses", "1", "65_535", kRequired,
+            [](FreeformJob& j, const Value& v) { j.job.laser.pulse_divider = v.integer; }),
+    integer("laser", "max_pulse_on_demand_hz", "Hz", "1", kBiggestHz, kRequired,
+            [](FreeformJob& j, const Value& v) { j.job.laser.max_pulse_on_demand_hz = v.integer; }),
+
+    integer("fpga", "clock_multiplier", "FPGA ticks per seed pulse", "1", "16", kRequired,
+            [](FreeformJob& j, const Value& v) { j.job.fpga.clock_multiplier = v.integer; }),
+
+    decided(text("surface", "expression", Type::text, kOneSurface,
+                 [](FreeformJob& j, const Value& v) { j.texture.surface = v.text; })),
+    decided(text("surface", "height_field", Type::path, kOneSurface,
+                 [](FreeformJob& j, const Value& v) { j.texture.height_field = v.text; })),
+    decided(text("surface", "mesh", Type::path, kOneSurface,
+                 [](FreeformJob& j, const Value& v) { j.texture.mesh = v.text; })),
+    decided(decimal("surface", "pixel_um", "um", kMostUm, "required with height_field",
+                    [](FreeformJob& j, const Value& v) { j.texture.pixel_um = to_double(v.number); })),
+    decimal("surface", "pixel_y_um", "um", kMostUm, "pixel_um",
+            [](FreeformJob& j, const Value& v) { j.texture.pixel_y_um = to_double(v.number); }),
+    Key{{"surface",
+         "height_mm",
+         Type::two_decimals,
+         "mm",
+         "-1_000_000",
+         kMostMm,
+         {},
+         Presence::optional,
+         "samples are mm (floats alone)"},
+        [](FreeformJob& j, const Value& v) { j.texture.height_mm = numbers_of(v); }},
+    decimal("surface", "max_slope_deg", "deg", "90", "80",
+            [](FreeformJob& j, const Value& v) { j.texture.max_slope_deg = to_double(v.number); }),
+
+    decided(integer("texture", "hilbert_order", "", "1", "10", kOneTexture,
+                    [](FreeformJob& j, const Value& v) { j.texture.hilbert_order = static_cast<int>(v.integer); })),
+    decided(text("texture", "path", Type::path, kOneTexture,
+                 [](FreeformJob& j, const Value& v) { j.texture.path = v.text; })),
+    decided(text("texture", "svg", Type::path, kOneTexture,
+                 [](FreeformJob& j, const Value& v) { j.texture.svg = v.text; })),
+    decided(text("texture", "bitmap", Type::path, kOneTexture,
+                 [](FreeformJob& j, const Value& v) { j.texture.bitmap = v.text; })),
+    decimal("texture", "pitch_um", "um", kMostUm, kRequired,
+            [](FreeformJob& j, const Value& v) { j.texture.pitch_um = to_double(v.number); }),
+    decimal("texture", "size_mm", "mm", kMostMm, "40",
+            [](FreeformJob& j, const Value& v) { j.texture.size_mm = to_double(v.number); }),
+    decided(decimal("texture", "step_um", "um", kMostUm, "required with path and svg, else 100",
+                    [](FreeformJob& j, const Value& v) { j.texture.step_um = to_double(v.number); })),
+    decimal("texture", "tolerance_um", "um", kMostMm, "1",
+            [](FreeformJob& j, const Value& v) { j.texture.tolerance_um = to_double(v.number); }),
+    decimal("texture", "line_pitch_um", "um", kMostUm, "pitch_um",
+            [](FreeformJob& j, const Value& v) { j.texture.line_pitch_um = to_double(v.number); }),
+    decimal(
+        "texture", "run_out_um", "um", kMostUm, "500",
+        [](FreeformJob& j, const Value& v) { j.texture.run_out_um = to_double(v.number); }, "0"),
+    decided(word("texture", "fires", kFires, "required with bitmap",
+                 [](FreeformJob& j, const Value& v) { j.texture.fires = v.text; })),
+    integer("texture", "threshold", "", "0", "65_535", "none: the bitmap is bilevel",
+            [](FreeformJob& j, const Value& v) { j.texture.threshold = v.integer; }),
+
+    word("split", "method", kSplitMethods, "\"gaussian\"",
+         [](FreeformJob& j, const Value& v) { j.split.method = v.text; }),
+    decimal("split", "sigma_um", "um", kMostUm, "by rule",
+            [](FreeformJob& j, const Value& v) { j.split.sigma_um = to_double(v.number); }),
+    word("split", "rule", kSigmaRules, "\"time\"", [](FreeformJob& j, const Value& v) { j.split.rule = v.text; }),
+    decimal(
+        "split", "time_share_percent", "%", "1_000", "0.5",
+        [](FreeformJob& j, const Value& v) { j.split.time_share_percent = to_double(v.number); }, "0"),
+    decimal("split", "cut", "sigma", "38", "8",
+            [](FreeformJob& j, const Value& v) { j.split.cut = to_double(v.number); }),
+
+    decimal("limits", "fod_um", "um", kMostUm, "100",
+            [](FreeformJob& j, const Value& v) { j.split.fod_um = to_double(v.number); }),
+    decimal("limits", "bia_deg", "deg", "90", "10",
+            [](FreeformJob& j, const Value& v) { j.split.bia_deg = to_double(v.number); }),
+    decimal("limits", "displacement_mm", "mm", kMostMm, "5",
+            [](FreeformJob& j, const Value& v) { j.split.displacement_mm = to_double(v.number); }),
+    decimal("limits", "landing_um", "um", kMostMm, "not judged",
+            [](FreeformJob& j, const Value& v) { j.split.landing_um = to_double(v.number); }),
+
+    Key{{"clamping",
+         "origin_mm",
+         Type::three_decimals,
+         "mm",
+         "-1_000_000",
+         kMostMm,
+         {},
+         Presence::optional,
+         "[0, 0, 0]"},
+        [](FreeformJob& j, const Value& v) { j.axes.origin_mm = numbers_of(v); }},
+    Key{{"clamping", "tilt_deg", Type::two_decimals, "deg", "-180", "180", {}, Presence::optional, "[0, 0]"},
+        [](FreeformJob& j, const Value& v) { j.axes.tilt_deg = numbers_of(v); }},
+
+    word("motion", "signs", kSigns, "\"texturing\"", [](FreeformJob& j, const Value& v) { j.axes.signs = v.text; }),
+    word("motion", "branch", kBranches, "\"positive\"", [](FreeformJob& j, const Value& v) { j.axes.branch = v.text; }),
+    word("motion", "stops", kStops, "\"points\" of a Hilbert curve, else \"corners\"",
+         [](FreeformJob& j, const Value& v) { j.motion.stops = v.text; }),
+    decimal("motion", "servo_us", "us", kMostMm, "50",
+            [](FreeformJob& j, const Value& v) { j.motion.servo_us = to_double(v.number); }),
+
+    axis_key<0, kSpeed>("axis.X", "max_speed_mm_s", "mm/s", kMostSpeed),
+    axis_key<0, kAcceleration>("axis.X", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
+    axis_key<0, kJerk>("axis.X", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    axis_key<1, kSpeed>("axis.Y", "max_speed_mm_s", "mm/s", kMostSpeed),
+    axis_key<1, kAcceleration>("axis.Y", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
+    axis_key<1, kJerk>("axis.Y", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    axis_key<2, kSpeed>("axis.Z", "max_speed_mm_s", "mm/s", kMostSpeed),
+    axis_key<2, kAcceleration>("axis.Z", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
+    axis_key<2, kJerk>("axis.Z", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    axis_key<3, kSpeed>("axis.A", "max_speed_deg_s", "deg/s", kMostSpeed),
+    axis_key<3, kAcceleration>("axis.A", "max_acceleration_deg_s2", "deg/s^2", kMostAcceleration),
+    axis_key<3, kJerk>("axis.A", "max_jerk_deg_s3", "deg/s^3", kMostJerk),
+    axis_key<4, kSpeed>("axis.C", "max_speed_deg_s", "deg/s", kMostSpeed),
+    axis_key<4, kAcceleration>("axis.C", "max_acceleration_deg_s2", "deg/s^2", kMostAcceleration),
+    axis_key<4, kJerk>("axis.C", "max_jerk_deg_s3", "deg/s^3", kMostJerk),
+    axis_key<5, kSpeed>("axis.U", "max_speed_mm_s", "mm/s", kMostSpeed),
+    axis_key<5, kAcceleration>("axis.U", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
+    axis_key<5, kJerk>("axis.U", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    axis_key<6, kSpeed>("axis.V", "max_speed_mm_s", "mm/s", kMostSpeed),
+    axis_key<6, kAcceleration>("axis.V", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
+    axis_key<6, kJerk>("axis.V", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+};
+
+}  // namespace
+
+std::span<const Key> key_table() {
+  return kTable;
+}
+
+std::span<const std::string_view> section_names() {
+  return kSections;
+}
+
+std::span<const std::string_view> parent_names() {
+  return kParents;
+}
+
+bool section_is_required(std::string_view section) {
+  return section == "job" || section == "laser" || section == "fpga" || section == "surface" || section == "texture";
+}
+
+const Key* find_key(std::string_view section, std::string_view key) {
+  const auto found = std::find_if(kTable.begin(), kTable.end(),
+                                  [&](const Key& spec) { return spec.section == section && spec.key == key; });
+  return found == kTable.end() ? nullptr : &*found;
+}
+
+}  // namespace gravure::freeform_file
+
+namespace gravure {
+
+std::vector<JobKey> freeform_job_keys() {
+  std::vector<JobKey> keys;
+  for (const freeform_file::Key& spec : freeform_file::key_table()) {
+    keys.push_back({std::string(spec.section), std::string(spec.key), type_name(spec.type), std::string(spec.unit),
+                    job_file::range_text(spec), std::string(spec.fallback)});
+  }
+  return keys;
+}
+
+}  // namespace gravure
