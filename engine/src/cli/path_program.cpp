@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <optional>
 #include <vector>
-
-#include "gravure/formats/tiff_writer.hpp"
 
 #include "program_files.hpp"
 
@@ -117,19 +114,11 @@ Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& gi
   return report.violations.empty() ? kDone : kLimitViolated;
 }
 
-Result<int> unroll_path_program(LineSource& program, const std::string& output, const Command& command) {
+Result<int> unroll_path_program(LineSource& program, const BilevelTiffPage& page, const std::string& output,
+                                const Command& command) {
   const Plan& plan = program.header().plan;
-  const std::optional<PathPicture> picture = plan.path->picture;
-  if (!picture || plan.rotary.line_pitch_um <= 0) {
-    return Error{ErrorCode::bad_argument, "the program marks a path, not a picture: see verify"};
-  }
   const double pixel_mm = to_double(plan.line.pixel_pitch_um) / 1000;
   const double line_mm = to_double(plan.rotary.line_pitch_um) / 1000;
-  BilevelTiffPage page;
-  page.width = picture->width;
-  page.height = picture->height;
-  page.x_dots_per_mm = 1 / pixel_mm;
-  page.y_dots_per_mm = 1 / line_mm;
   const auto row_bytes = static_cast<std::size_t>((page.width + 7) / 8);
   std::vector<std::byte> bits(row_bytes * static_cast<std::size_t>(page.height));
   VerifyPathOptions options;
@@ -148,7 +137,7 @@ Result<int> unroll_path_program(LineSource& program, const std::string& output, 
     return {};
   };
   GRAVURE_TRY(const PathReport report, verify_path(program, emulated_devices(), options));
-  if (program.header().fires == Fires::black) {
+  if ((program.header().fires == Fires::black) != page.zero_is_white) {
     for (std::size_t i = 0; i < bits.size(); ++i) {
       const bool last = i % row_bytes == row_bytes - 1 && page.width % 8 != 0;
       bits[i] = ~bits[i] & static_cast<std::byte>(last ? 0xFFU << static_cast<unsigned>(8 - page.width % 8) : 0xFFU);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gravure/core/program.hpp"
+#include "gravure/formats/tiff_writer.hpp"
 #include "gravure/twin/verify_path.hpp"
 #include "verb.hpp"
 
@@ -15,8 +16,9 @@ Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& op
                                 const Command& command);
 
 /// What `unroll` does with a picture on a surface: every pulse that fired, put on the workpiece and projected back
-/// along z.
-Result<int> unroll_path_program(LineSource& program, const std::string& output, const Command& command);
+/// along z, into a page of the picture's size.
+Result<int> unroll_path_program(LineSource& program, const BilevelTiffPage& page, const std::string& output,
+                                const Command& command);
 
 /// What `inspect` says of one, after name and mode.
 std::string path_text(const Plan& plan);

@@ -67,9 +67,8 @@ std::optional<LayerOrigin> picture_origin(const ProgramHeader& header, const Opt
 
 /// The size tags and the photometric sense of the source, where it is still there, so that the picture equals a layer
 /// written the same way; else its size on the workpiece.
-Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& options,
-                                const std::optional<LayerOrigin>& origin) {
-  const UnrolledSize size = unrolled_size(header);
+Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& options, const UnrolledSize& size,
+                                const SourceImage* source) {
   const double along = 1000.0 / to_double(header.plan.line.pixel_pitch_um);
   const double across = 1000.0 / to_double(header.plan.rotary.line_pitch_um);
   const bool rows = header.lines_along == LinesAlong::rows;
@@ -79,22 +78,35 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& opti
   page.compression = options.compression == "source" ? TiffCompression::deflate : compression_of(options.compression);
   page.x_dots_per_mm = rows ? along : across;
   page.y_dots_per_mm = rows ? across : along;
-  if (!origin) {
-    return page;  // unroll() says what is wrong
+  GRAVURE_CHECK(refuse_overwrite(options.output, {options.program}));
+  if (source == nullptr) {
+    return page;  // where that is wrong, unroll() says so
   }
-  const SourceImage& source = header.sources[origin->source];
-  const std::string path = locate_source(source, header, options.program, {});
-  GRAVURE_CHECK(refuse_overwrite(options.output, {options.program, path}));
+  const std::string path = locate_source(*source, header, options.program, {});
+  GRAVURE_CHECK(refuse_overwrite(options.output, {path}));
   const ImageFiles files;
-  if (const Result<std::unique_ptr<ImageSource>> image = files.open(path, source.page); !path.empty() && image) {
+  if (const Result<std::unique_ptr<ImageSource>> image = files.open(path, source->page); !path.empty() && image) {
     page.x_dots_per_mm = image.value()->info().x_dots_per_mm;
     page.y_dots_per_mm = image.value()->info().y_dots_per_mm;
     page.zero_is_white = image.value()->info().zero_is_white;
     if (options.compression == "source") {
-      page.compression = compression_of_source(path, source.page);
+      page.compression = compression_of_source(path, source->page);
     }
   }
   return page;
+}
+
+/// What a bitmap on a surface comes back as; bad_argument for a path that is none.
+Result<BilevelTiffPage> path_page_of(const ProgramHeader& header, const Options& options) {
+  const std::optional<PathPicture>& picture = header.plan.path->picture;
+  if (!picture || header.plan.rotary.line_pitch_um <= 0) {
+    return Error{ErrorCode::bad_argument, "the program marks a path, not a picture: see verify"};
+  }
+  const auto source = std::find_if(header.sources.begin(), header.sources.end(), [](const SourceImage& each) {
+    return each.width > 0;  // height fields and other files of a job have no pixels here
+  });
+  return page_of(header, options, {picture->width, picture->height},
+                 source == header.sources.end() ? nullptr : &*source);
 }
 
 /// What is written is TIFF, whatever it is called.
@@ -115,10 +127,12 @@ Result<int> run(const Options& options, const Command& command) {
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
   if (header.plan.path) {
-    return unroll_path_program(*program, options.output, command);
+    GRAVURE_TRY(const BilevelTiffPage page, path_page_of(header, options));
+    return unroll_path_program(*program, page, options.output, command);
   }
   const std::optional<LayerOrigin> origin = picture_origin(header, options);
-  GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options, origin));
+  const SourceImage* shown = origin ? &header.sources[origin->source] : nullptr;
+  GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options, unrolled_size(header), shown));
   UnrollOptions unroll_options;
   unroll_options.memory_bytes = command.memory_bytes();
   unroll_options.cancel = &cancel_token();  // before there is a temporary file: from here on Ctrl-C takes it away again
@@ -137,7 +151,7 @@ Result<int> run(const Options& options, const Command& command) {
   GRAVURE_CHECK(options.layer ? unroll_layer(*program, emulated_devices(), *options.layer, sink, unroll_options)
                               : unroll(*program, emulated_devices(), *options.revolution, sink, unroll_options));
   GRAVURE_CHECK(writer.commit());
-  const SourceImage& source = header.sources[origin->source];
+  const SourceImage& source = *shown;
   if (command.json) {
     Json json = {{"picture", options.output}};
     if (options.revolution) {
