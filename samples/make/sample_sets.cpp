@@ -138,6 +138,28 @@ Result<void> make_panel(const std::string& folder) {
   return make_diamonds(folder, kPanelPixels, kPanelPixels, 4);
 }
 
+/// Height field and bitmap of samples/saddle/job.toml: z = 0.02 x y over 12 x 12 mm, -0.8 to 0.8 mm in 16 bits.
+Result<void> make_saddle(const std::string& folder) {
+  constexpr std::int64_t kSide = 121;
+  FileOptions heights;
+  heights.samples = Samples::u16;
+  heights.compression = "zip";
+  heights.x_dots_per_mm = heights.y_dots_per_mm = 10;
+  const RowSource saddle = [](std::int64_t row, std::vector<std::uint16_t>& levels) {
+    constexpr std::int64_t kMiddle = kSide / 2;
+    for (std::int64_t column = 0; column < kSide; ++column) {
+      // In units of 0.0002 mm: x y / 50 with both in tenths of a mm.
+      const std::int64_t height = (column - kMiddle) * (kMiddle - row);
+      levels[static_cast<std::size_t>(column)] = static_cast<std::uint16_t>((65535 * (height + 4000) + 4000) / 8000);
+    }
+  };
+  GRAVURE_CHECK(write_image(folder + "/saddle.tif", kSide, kSide, {saddle}, heights));
+  FileOptions bits;
+  bits.compression = "ccittfax4";
+  bits.x_dots_per_mm = bits.y_dots_per_mm = 25;  // 40 um
+  return write_image(folder + "/diamonds.tif", 120, 72, {diamonds(0, 120)}, bits);
+}
+
 Result<void> make_formats(const std::string& folder) {
   for (const FormatFile& file : format_files()) {
     std::vector<RowSource> pages;
@@ -158,6 +180,7 @@ const std::vector<SampleSet>& sample_sets() {
       {"stent", "bilevel G4 mask of a diamond lattice, 3000 x 942 pixels", make_stent},
       {"helical_roller", "eight bilevel G4 layers of a roller face, 15000 x 7840 pixels", make_helical_roller},
       {"panel", "four bilevel G4 layers of a panel, 5000 x 5000 pixels", make_panel},
+      {"saddle", "16-bit height field of a saddle and a bilevel G4 bitmap of 120 x 72 pixels for it", make_saddle},
       {"small", "six bilevel layers of 200 x 240 pixels, upright and on their side, one as tiles", make_small},
       {"formats", "one small picture in every format that is read", make_formats},
   };

@@ -8,7 +8,7 @@
 
 namespace gravure::samples {
 
-/// What can be made: "roller", "stent", "helical_roller", "panel", "small", "formats".
+/// What can be made: "roller", "stent", "helical_roller", "panel", "saddle", "small", "formats".
 struct SampleSet {
   std::string_view name;
   std::string_view about;
