@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "charts.hpp"
 
 namespace gravure::cli {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kUsed = 0.9;         // of the field: its rim is left to the turns
 constexpr double kSteepest_deg = 60;  // incidence up to which marks stay readable
 constexpr std::int64_t kArm = 7;      // pixels of a cross, to either side of its middle
@@ -22,13 +22,14 @@ struct MarkRow {
 };
 
 MarkRow mark_row(const ChartBase& base, const ChartOptions& options, std::int64_t row) {
-  const double radius_mm = to_double(base.plan.rotary.circumference_um) / (2000 * kPi);
-  const double reach_mm = std::min(kUsed * base.field_mm / 2, radius_mm * std::sin(kSteepest_deg * kPi / 180));
+  const double radius_mm = to_double(base.plan.rotary.circumference_um) / (2000 * std::numbers::pi);
+  const double reach_mm =
+      std::min(kUsed * base.field_mm / 2, radius_mm * std::sin(kSteepest_deg * std::numbers::pi / 180));
   const double share = 2 * static_cast<double>(row) / static_cast<double>(options.rows - 1) - 1;
   MarkRow made;
   // Whole millionths of a degree, so that the job says exactly what the table does.
-  made.offset_deg = std::round(std::asin(share * reach_mm / radius_mm) * 180 / kPi * 1e6) / 1e6 + 0.0;
-  made.v_mm = radius_mm * std::sin(made.offset_deg * kPi / 180);
+  made.offset_deg = std::round(std::asin(share * reach_mm / radius_mm) * 180 / std::numbers::pi * 1e6) / 1e6 + 0.0;
+  made.v_mm = radius_mm * std::sin(made.offset_deg * std::numbers::pi / 180);
   const std::int64_t middle = (options.rows - 1) / 2;
   made.name = row == middle ? "job" : fmt::format("job_{}", row);
   made.line = (2 * row + 1) * base.plan.rotary.lines_per_revolution / (2 * options.rows);
@@ -87,7 +88,7 @@ Result<Chart> field_chart(const ChartBase& base, const ChartOptions& options) {
       const double u_mm = (static_cast<double>(x) - static_cast<double>(width - 1) / 2) * pitch_mm;
       csv += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", u_mm + 0.0, made.v_mm, u_mm + 0.0,
                          static_cast<double>(made.line) * to_double(base.plan.rotary.line_pitch_um) / 1000,
-                         std::cos(made.offset_deg * kPi / 180));
+                         std::cos(made.offset_deg * std::numbers::pi / 180));
     }
     const std::string layer = fmt::format("layers/row_{}.tif", row);
     chart.pictures.push_back({layer, {picture}});

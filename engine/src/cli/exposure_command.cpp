@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gravure/core/units.hpp"
 #include "gravure/emulator/fired_lines.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/tiff_writer.hpp"
@@ -16,8 +17,6 @@
 
 namespace gravure::cli {
 namespace {
-
-constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 
 struct Options {
   std::string folder;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gravure/core/path_motion.hpp"
+#include "gravure/core/units.hpp"
 #include "gravure/formats/freeform_job.hpp"
 #include "gravure/texture/axes.hpp"
 #include "gravure/texture/clamping.hpp"
@@ -23,7 +24,6 @@
 namespace gravure::cli {
 
 inline constexpr double kDegreesPerRad = 180 / std::numbers::pi;
-inline constexpr double kUmPerMm = 1000;
 
 /// To 1e-9 of its unit: what is less depends on the compiler.
 double figure(double value);

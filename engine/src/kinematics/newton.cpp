@@ -9,7 +9,7 @@
 namespace gravure::kinematics {
 namespace {
 
-constexpr int kMostSteps = 500;
+constexpr int kMostDampedSteps = 500;
 constexpr double kLeverMm = 100;      ///< weighs directions against positions: 1 rad counts as much as so many mm
 constexpr double kConverged = 1e-12;  ///< mm, and as much per mm of distance
 
@@ -70,7 +70,7 @@ class Search {
     Eigen::VectorXd error = error_at(pose);
     const double enough = kConverged * (1 + problem_.position_mm.norm());
     double damping = 1e-3;
-    for (int step = 0; step < kMostSteps && error.norm() > enough && damping < 1e12; ++step) {
+    for (int step = 0; step < kMostDampedSteps && error.norm() > enough && damping < 1e12; ++step) {
       const Eigen::MatrixXd slope = slope_at(pose);
       Eigen::MatrixXd normal = slope.transpose() * slope;
       normal.diagonal() += damping * weights_;

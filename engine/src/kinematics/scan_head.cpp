@@ -9,7 +9,7 @@ namespace gravure::kinematics {
 namespace {
 
 constexpr double kQuarterTurn = 1.57079632679489661923;
-constexpr int kMostSteps = 50;
+constexpr int kMostHeadSteps = 50;
 
 double tilt_of(const ScanHead& head) noexcept {
   return head.lens == Lens::f_theta ? head.tilt_rad_per_mm : 0;
@@ -19,7 +19,7 @@ double tilt_of(const ScanHead& head) noexcept {
 /// the focal plane leaves the lens. NaN where there is none.
 double field_radius(double distance, double height, double tilt) noexcept {
   double r = distance;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostHeadSteps; ++step) {
     if (!(std::abs(tilt * r) < kQuarterTurn)) {
       break;
     }

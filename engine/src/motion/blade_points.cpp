@@ -5,17 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "check_request.hpp"
 #include "gravure/core/csv_rows.hpp"
+#include "vector3.hpp"
 
 namespace gravure::motion {
 namespace {
 
 constexpr double kMostPoints = 5e6;
 constexpr double kMostCoordinate_mm = 1e6;
-constexpr double kTwoPi = 6.28318530717958647692;
 
 /// The span of a Catmull-Rom curve that holds a parameter; the ends are continued straight.
 struct Span {
@@ -45,10 +46,6 @@ struct Span {
     return sum;
   }
 };
-
-double distance(const Vector3& a, const Vector3& b) noexcept {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
 
 /// Largest distances of neighbours in a grid of sample_sides(), along the curves and across.
 std::pair<double, double> gaps_of(const std::vector<Vector3>& points, std::size_t across) {
@@ -147,7 +144,7 @@ Result<std::vector<Vector3>> blade_points(const BladeRails& rails, const BladeSa
   points.reserve(of_one * sampling.blades);
   const Vector3& centre = sampling.centre_mm;
   for (std::size_t k = 1; k < sampling.blades; ++k) {
-    const double turn = kTwoPi * static_cast<double>(k) / static_cast<double>(sampling.blades);
+    const double turn = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(sampling.blades);
     const double c = std::cos(turn);
     const double s = std::sin(turn);
     for (std::size_t i = 0; i < of_one; ++i) {

@@ -5,19 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+
+#include "vector3.hpp"
 
 namespace gravure::motion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
-double length_of(const Vector3& v) noexcept {
-  return std::hypot(v[0], v[1], v[2]);
-}
-
 /// `angle` with the whole turns that bring it nearest to `near`.
 double nearest_turn(double angle, double near) noexcept {
-  return angle + 2 * kPi * std::round((near - angle) / (2 * kPi));
+  return angle + 2 * std::numbers::pi * std::round((near - angle) / (2 * std::numbers::pi));
 }
 
 /// One way to stand at a sample, with the cheapest way to get there.
@@ -53,9 +50,9 @@ void keep(std::vector<Choice>& choices, const Choice& choice) {
 }
 
 /// All choices at one sample that a choice before can move to: both branches, the nearest turns of each.
-class Sample {
+class Reachable {
  public:
-  Sample(const ToolPose& tool, const BranchCosts& costs) : costs_(costs) {
+  Reachable(const ToolPose& tool, const BranchCosts& costs) : costs_(costs) {
     flat_ = std::hypot(tool.axis[0], tool.axis[1]);
     tilt_ = std::atan2(flat_, tool.axis[2]);
     turn_ = std::atan2(tool.axis[0], tool.axis[1]);
@@ -65,9 +62,9 @@ class Sample {
   void extend(const Choice& from, std::size_t index, std::vector<Choice>& choices) const {
     for (const double side : {1.0, -1.0}) {
       const double a = side * tilt_;
-      const double base = side > 0 ? turn_ : turn_ + kPi;
+      const double base = side > 0 ? turn_ : turn_ + std::numbers::pi;
       const double nearest = pole_ ? from.c : nearest_turn(base, from.c);
-      for (const double c : {nearest, nearest - 2 * kPi, nearest + 2 * kPi}) {
+      for (const double c : {nearest, nearest - 2 * std::numbers::pi, nearest + 2 * std::numbers::pi}) {
         if (within(a, costs_.a_min_rad, costs_.a_max_rad) && within(c, costs_.c_min_rad, costs_.c_max_rad)) {
           Choice choice{a, c, 0, 0, index};
           choice.cost = step_cost(from, a, c, costs_, choice.sense);
@@ -127,7 +124,7 @@ AxisPose axes_at(const Vector3& centre_mm, const Vector3& rotary_centre_mm, doub
 AxisPose axes_of(const ToolPose& tool, const Vector3& rotary_centre_mm, Branch branch, double c_before_rad) {
   const double flat = std::hypot(tool.axis[0], tool.axis[1]);
   const double tilt = std::atan2(flat, tool.axis[2]);
-  const double turn = std::atan2(tool.axis[0], tool.axis[1]) + (branch == Branch::positive_a ? 0 : kPi);
+  const double turn = std::atan2(tool.axis[0], tool.axis[1]) + (branch == Branch::positive_a ? 0 : std::numbers::pi);
   const double c = flat > 0 ? nearest_turn(turn, c_before_rad) : c_before_rad;
   return axes_at(tool.centre_mm, rotary_centre_mm, branch == Branch::positive_a ? tilt : -tilt, c);
 }
@@ -166,7 +163,7 @@ Result<std::vector<AxisPose>> choose_branches(std::span<const ToolPose> path, co
     if (!(length > 0) || !std::isfinite(length)) {
       return Error{ErrorCode::bad_argument, fmt::format("five_axis: sample {}: the tool axis has no direction", k + 1)};
     }
-    const Sample sample(path[k], costs);
+    const Reachable sample(path[k], costs);
     if (k == 0) {
       const double middle = std::clamp(0.0, costs.c_min_rad, costs.c_max_rad);
       sample.begin(c_start_rad.value_or(middle), c_start_rad.has_value(), stages[0]);

@@ -7,7 +7,7 @@
 namespace gravure::motion {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMaxCornerModes = 3;
 
 /// Modes with the errors of corner `bits`: two bits a mode, frequency and damping.
@@ -42,7 +42,7 @@ MoveSpace::Move MoveSpace::move_at(const MovePoint& x) const noexcept {
     slower = std::max(slower, std::cbrt(steepest / d.jerk_s / problem_.jerk_max_mm_s3));
   }
   if (!(slower < 1e100)) {
-    return {{0, 1, 1, kNever}, 0};
+    return {{0, 1, 1, kEndless}, 0};
   }
   return {{d.jerk_s * slower, d.up_s * slower, d.down_s * slower, d.cruise_s * slower}, velocity / slower};
 }
@@ -62,8 +62,8 @@ Candidate MoveSpace::candidate_at(const MovePoint& point) const noexcept {
   const Move move = move_at(point);
   const Durations& d = move.durations;
   Candidate c{
-      move.velocity,     move.velocity / d.up_s,     move.velocity / d.down_s, d.jerk_s / (problem_.update_us * 1e-6),
-      d.access_time_s(), cost(kernel_, move, kNever)};
+      move.velocity,     move.velocity / d.up_s,       move.velocity / d.down_s, d.jerk_s / (problem_.update_us * 1e-6),
+      d.access_time_s(), cost(kernel_, move, kEndless)};
   // Rounding must not carry a limit's own value over the limit.
   c.v_mm_s = std::min(c.v_mm_s, problem_.v_max_mm_s);
   c.a_up_mm_s2 = std::min(c.a_up_mm_s2, problem_.a_up_max_mm_s2);
@@ -78,7 +78,7 @@ double least_s_factor(const SearchProblem& problem, double a_mm_s2) noexcept {
   }
   double s_factor = a_mm_s2 / problem.jerk_max_mm_s3 / (problem.update_us * 1e-6);
   while (a_mm_s2 / (s_factor * problem.update_us * 1e-6) > problem.jerk_max_mm_s3) {
-    s_factor = std::nextafter(s_factor, kNever);
+    s_factor = std::nextafter(s_factor, kEndless);
   }
   return s_factor;
 }
@@ -91,12 +91,12 @@ double MoveSpace::cost(const ResidualKernel& kernel, const Move& move, double cu
   ++evaluated_;
   const double access_s = move.durations.access_time_s();
   if (!(access_s < std::min(cutoff, 1e100))) {
-    return kNever;
+    return kEndless;
   }
   const double tolerance = problem_.band.tolerance * (1 - 1e-6);
   const ResidualSignal signal = kernel.residual(move.durations, move.velocity);
   if (cutoff < 1e100 && std::abs(signal.at(cutoff - access_s)) > tolerance) {
-    return kNever;
+    return kEndless;
   }
   return access_s + signal.last_exit_s(tolerance);
 }
@@ -114,7 +114,7 @@ double MoveSpace::worst_cost(const MovePoint& point, double cutoff) const noexce
       std::swap(corners_[i], corners_[i / 2]);  // what refuses one point is likely to refuse the next
     }
   }
-  return worst < cutoff ? worst : kNever;
+  return worst < cutoff ? worst : kEndless;
 }
 
 }  // namespace gravure::motion

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxBlocks = 10'000'000;
 
-struct Modal {
+struct Position {
   std::array<double, 3> xyz{};
   double a = 0;
   double c = 0;
@@ -46,7 +46,7 @@ struct Moved {
 };
 
 /// Takes the words of one line.
-Moved take_line(const std::vector<Word>& words, Modal& modal) noexcept {
+Moved take_line(const std::vector<Word>& words, Position& modal) noexcept {
   Moved moved;
   for (const Word& word : words) {
     if (double* axis = modal.word(word.letter)) {
@@ -62,7 +62,7 @@ Moved take_line(const std::vector<Word>& words, Modal& modal) noexcept {
 
 Result<RotaryPath> parse_rotary_program(std::string_view text, std::string_view name) {
   RotaryPath path;
-  Modal modal;
+  Position modal;
   bool any_move = false;
   std::size_t switched_line = 0;
   for (std::size_t number = 1; !text.empty(); ++number) {

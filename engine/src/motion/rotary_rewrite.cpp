@@ -8,11 +8,11 @@
 
 #include "gravure/motion/unreverse.hpp"
 #include "rotary_words.hpp"
+#include "vector3.hpp"
 
 namespace gravure::motion {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr std::string_view kLetters = "XYZAC";
 /// Half the last decimal that is written.
 constexpr double kSame = 5e-7;
@@ -45,10 +45,6 @@ Vector3 held_at(const Modal& modal, const RewriteRequest& r) noexcept {
     held[i] += r.ball_radius_mm * tool.axis[i];
   }
   return held;
-}
-
-double distance(const Vector3& a, const Vector3& b) noexcept {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
 std::string decimal(double value) {

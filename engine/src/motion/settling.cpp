@@ -12,7 +12,7 @@
 namespace gravure::motion {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kUnsettled = std::numeric_limits<double>::infinity();
 
 /// The sum of the terms' sizes over time, against a tolerance.
 class Envelope {
@@ -32,7 +32,7 @@ class Envelope {
 
   bool settled_at_once() const noexcept { return !(total_ > tolerance_); }
   bool never_settles() const noexcept { return undamped_ >= tolerance_; }
-  double trivial_time_s() const noexcept { return settled_at_once() ? 0 : kNever; }
+  double trivial_time_s() const noexcept { return settled_at_once() ? 0 : kUnsettled; }
 
   /// When it reaches the tolerance, by Newton on the logarithm, which is convex and falls: it comes from the left and
   /// never passes the root.
@@ -98,7 +98,7 @@ class Envelope {
   double tolerance_;
   double total_ = 0;
   double undamped_ = 0;
-  double slowest_decay_ = kNever;
+  double slowest_decay_ = kUnsettled;
   std::array<double, kMaxModes> size_{};
 };
 

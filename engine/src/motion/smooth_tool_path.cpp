@@ -6,10 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "vector3.hpp"
+
 namespace gravure::motion {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr std::size_t kMostRounds = 8;
 constexpr const char* kAddPoints = ", or add points between the two";
 
@@ -87,10 +88,6 @@ class Smoother {
 
   static Vector3 between(const Vector3& a, const Vector3& b, double share) noexcept {
     return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])};
-  }
-
-  static double distance(const Vector3& a, const Vector3& b) noexcept {
-    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
   }
 
   static std::string way_of(const std::string& from, const std::string& to) {

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "gravure/core/as_size.hpp"
 #include "gravure/raster/place.hpp"
 #include "gravure/raster/transpose.hpp"
 
@@ -18,10 +19,6 @@ namespace {
 constexpr std::int64_t kLeastSlabRows = 64;   // pieces of 8 bytes; shorter ones cost more than decoding again
 constexpr std::int64_t kMostSlabRows = 4096;  // beyond this nothing is won
 constexpr std::int64_t kBandRows = 64;
-
-std::size_t size(std::int64_t bytes) {
-  return static_cast<std::size_t>(bytes);
-}
 
 Error failure(const char* what) {
   return {ErrorCode::io, std::string("temporary file for columns: ") + what + ": " + std::strerror(errno) +
@@ -104,16 +101,16 @@ Result<std::shared_ptr<const ColumnSpill>> ColumnSpill::make(const Size& size, c
 
 Result<void> ColumnSpill::fill(const RowReader& rows) {
   const std::int64_t row_bytes = raster::packed_bytes(size_.columns);
-  std::vector<std::byte> slab(size(size_.slab_rows * row_bytes));
-  std::vector<std::byte> turned(size(size_.slab_rows / 8 * size_.columns));
+  std::vector<std::byte> slab(as_size(size_.slab_rows * row_bytes));
+  std::vector<std::byte> turned(as_size(size_.slab_rows / 8 * size_.columns));
   for (std::int64_t number = 0; number * size_.slab_rows < size_.rows; ++number) {
     const std::int64_t count = rows_in(number);
     for (std::int64_t row = 0; row < count; row += kBandRows) {
       const std::int64_t now = std::min(kBandRows, count - row);
       GRAVURE_CHECK(rows(number * size_.slab_rows + row, now,
-                         std::span(slab).subspan(size(row * row_bytes), size(now * row_bytes))));
+                         std::span(slab).subspan(as_size(row * row_bytes), as_size(now * row_bytes))));
     }
-    const auto columns = std::span(turned).first(size(raster::packed_bytes(count) * size_.columns));
+    const auto columns = std::span(turned).first(as_size(raster::packed_bytes(count) * size_.columns));
     raster::transpose(columns, slab, count, size_.columns);
     GRAVURE_CHECK(write_at(fd_, offset_of(number), columns));
   }
@@ -122,14 +119,14 @@ Result<void> ColumnSpill::fill(const RowReader& rows) {
 
 Result<void> ColumnSpill::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) const {
   const std::int64_t line_bytes = raster::packed_bytes(size_.rows);
-  std::vector<std::byte> pieces(size(size_.slab_rows / 8 * count));
+  std::vector<std::byte> pieces(as_size(size_.slab_rows / 8 * count));
   for (std::int64_t slab = 0; slab * size_.slab_rows < size_.rows; ++slab) {
     const std::int64_t piece = raster::packed_bytes(rows_in(slab));
-    const auto now = std::span(pieces).first(size(piece * count));
+    const auto now = std::span(pieces).first(as_size(piece * count));
     GRAVURE_CHECK(read_at(fd_, offset_of(slab) + first * piece, now));
     std::byte* to = out.data() + slab * (size_.slab_rows / 8);
     for (std::int64_t column = 0; column < count; ++column, to += line_bytes) {
-      std::memcpy(to, now.data() + column * piece, size(piece));
+      std::memcpy(to, now.data() + column * piece, as_size(piece));
     }
   }
   return {};

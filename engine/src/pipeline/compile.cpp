@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "column_spill.hpp"
+#include "gravure/core/units.hpp"
 #include "gravure/pipeline/stored_order.hpp"
 #include "gravure/pipeline/window_reader.hpp"
 #include "gravure/raster/place.hpp"
@@ -64,8 +65,6 @@ class TaskList {
   std::int64_t group_;
   std::int64_t groups_;
 };
-
-constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 
 /// Everything one worker holds beside its panel and what waits in the writer.
 std::int64_t worker_bytes(const ReaderNeeds& needs, std::int64_t lines_per_chunk) {

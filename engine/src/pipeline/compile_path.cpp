@@ -9,7 +9,7 @@
 namespace gravure {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;  // instants read at a time
+constexpr std::int64_t kInstants = 4096;  // instants read at a time
 
 Error misfit(const std::string& message) {
   return {ErrorCode::bad_argument, message};
@@ -55,9 +55,9 @@ class SetPointReader {
     }
   }
 
-  /// The next up to kBlock set-points; none at the end.
+  /// The next up to kInstants set-points; none at the end.
   Result<std::span<const PathSetPoint>> next() {
-    const std::int64_t count = std::min(kBlock, motion_.instants() - done_);
+    const std::int64_t count = std::min(kInstants, motion_.instants() - done_);
     instants_.resize(static_cast<std::size_t>(count));
     points_.resize(static_cast<std::size_t>(count));
     if (count > 0) {
@@ -213,8 +213,8 @@ Result<CompiledPath> compile_path(ProgramHeader header, const PathMotion& motion
                                   Progress* progress) {
   GRAVURE_CHECK(check_inputs(header.plan, motion, pulses, targets));
   PathCompiler compiler(std::move(header), motion, pulses, sink);
-  for (std::size_t at = 0; at < targets.size(); at += kBlock) {
-    GRAVURE_CHECK(sink.put_targets(targets.subspan(at, std::min<std::size_t>(kBlock, targets.size() - at))));
+  for (std::size_t at = 0; at < targets.size(); at += kInstants) {
+    GRAVURE_CHECK(sink.put_targets(targets.subspan(at, std::min<std::size_t>(kInstants, targets.size() - at))));
   }
   GRAVURE_CHECK(compiler.run(cancel, progress));
   return compiler.finish();

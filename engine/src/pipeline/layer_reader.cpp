@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "column_spill.hpp"
+#include "gravure/core/as_size.hpp"
 #include "gravure/raster/threshold.hpp"
 #include "gravure/raster/transpose.hpp"
 
@@ -40,10 +41,6 @@ std::uint32_t integer_maximum(SampleType samples) {
   return samples == SampleType::u8 ? 255U : 65535U;
 }
 
-std::size_t size(std::int64_t bytes) {
-  return static_cast<std::size_t>(bytes);
-}
-
 /// Samples of `size` bytes: rows x cols -> cols x rows, in blocks that fit the first-level cache.
 void transpose_samples(std::byte* dst, std::int64_t dst_stride, const std::byte* src, std::int64_t src_stride,
                        std::int64_t rows, std::int64_t cols, std::int64_t sample) {
@@ -52,7 +49,7 @@ void transpose_samples(std::byte* dst, std::int64_t dst_stride, const std::byte*
     for (std::int64_t c0 = 0; c0 < cols; c0 += kBlock) {
       for (std::int64_t c = c0; c < std::min(cols, c0 + kBlock); ++c) {
         for (std::int64_t r = r0; r < std::min(rows, r0 + kBlock); ++r) {
-          std::memcpy(dst + c * dst_stride + r * sample, src + r * src_stride + c * sample, size(sample));
+          std::memcpy(dst + c * dst_stride + r * sample, src + r * src_stride + c * sample, as_size(sample));
         }
       }
     }
@@ -184,8 +181,8 @@ Result<void> LayerReader::read_rows(std::int64_t first_row, std::int64_t count, 
     GRAVURE_TRY(source_, open_tiled(opener_, path_, page_, stack_.tiles));
   }
   next_row_ = first_row + count;
-  Result<void> read =
-      source_->read_rows(first_row, count, out.first(size(count * row_bytes(stack_.samples, source_->info().width))));
+  Result<void> read = source_->read_rows(first_row, count,
+                                         out.first(as_size(count * row_bytes(stack_.samples, source_->info().width))));
   if (!read) {
     source_.reset();  // whoever asks on is served by a fresh one, which says the same of the same rows
   }
@@ -198,7 +195,7 @@ Result<void> LayerReader::load_panel(std::int64_t first_line) {
   held_count_ = 0;
   GRAVURE_CHECK(find_spill());
   if (spill_) {
-    held_.resize(size(count * held_line_bytes(stack_)));
+    held_.resize(as_size(count * held_line_bytes(stack_)));
     GRAVURE_CHECK(spill_->read(first, count, held_));
   } else {
     GRAVURE_CHECK(decode_panel(first, count));
@@ -233,15 +230,15 @@ Result<void> LayerReader::decode_panel(std::int64_t first, std::int64_t count) {
   const std::int64_t sample = bytes_per_sample(stack_.samples);
   const bool bits = stack_.samples == SampleType::bit;
   const std::int64_t slab = row_bytes(stack_.samples, count);
-  std::vector<std::byte> band(size(band_rows * image_row));
-  std::vector<std::byte> columns(bits ? size(rows * slab) : 0);
-  held_.resize(size(count * held_line_bytes(stack_)));
+  std::vector<std::byte> band(as_size(band_rows * image_row));
+  std::vector<std::byte> columns(bits ? as_size(rows * slab) : 0);
+  held_.resize(as_size(count * held_line_bytes(stack_)));
   for (std::int64_t row = 0; row < rows; row += band_rows) {
     const std::int64_t now = std::min(band_rows, rows - row);
     GRAVURE_CHECK(read_rows(row, now, band));
     if (bits) {  // panels start at whole bytes
       for (std::int64_t r = 0; r < now; ++r) {
-        std::memcpy(columns.data() + (row + r) * slab, band.data() + r * image_row + first / 8, size(slab));
+        std::memcpy(columns.data() + (row + r) * slab, band.data() + r * image_row + first / 8, as_size(slab));
       }
     } else {
       transpose_samples(held_.data() + row * sample, held_line_bytes(stack_), band.data() + first * sample, image_row,
@@ -264,8 +261,8 @@ Result<void> LayerReader::read_bits(std::int64_t first_line, std::int64_t count,
       GRAVURE_CHECK(load_panel(first_line));
     }
     const std::int64_t now = std::min(count, held_first_ + held_count_ - first_line);
-    std::memcpy(out.data(), held_.data() + (first_line - held_first_) * bytes, size(now * bytes));
-    out = out.subspan(size(now * bytes));
+    std::memcpy(out.data(), held_.data() + (first_line - held_first_) * bytes, as_size(now * bytes));
+    out = out.subspan(as_size(now * bytes));
     first_line += now;
     count -= now;
   }
@@ -277,7 +274,7 @@ Result<std::span<const std::byte>> LayerReader::read_samples(std::int64_t first_
   if (first_line < held_first_ || first_line >= held_first_ + held_count_) {
     if (stack_.lines_along == LinesAlong::rows) {
       held_count_ = 0;
-      held_.resize(size(count * bytes));
+      held_.resize(as_size(count * bytes));
       GRAVURE_CHECK(read_rows(first_line, count, held_));
       held_first_ = first_line;
       held_count_ = count;
@@ -286,7 +283,7 @@ Result<std::span<const std::byte>> LayerReader::read_samples(std::int64_t first_
     }
   }
   const std::int64_t now = std::min(count, held_first_ + held_count_ - first_line);
-  return std::span<const std::byte>(held_).subspan(size((first_line - held_first_) * bytes), size(now * bytes));
+  return std::span<const std::byte>(held_).subspan(as_size((first_line - held_first_) * bytes), as_size(now * bytes));
 }
 
 Result<LayerReader::Limit> LayerReader::limit_of(const LayerInput& input) const {
@@ -351,9 +348,9 @@ void LayerReader::cut(std::span<const std::byte> samples, std::int64_t count, co
 
 Result<bool> LayerReader::read_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
                                      std::span<std::byte> out) {
-  const LayerInput& input = stack_.layers.at(size(layer));
+  const LayerInput& input = stack_.layers.at(as_size(layer));
   GRAVURE_CHECK(select(input));
-  const std::span<std::byte> lines = out.first(size(count * row_bytes(SampleType::bit, stack_.pixels)));
+  const std::span<std::byte> lines = out.first(as_size(count * row_bytes(SampleType::bit, stack_.pixels)));
   if (stack_.samples == SampleType::bit) {
     GRAVURE_CHECK(read_bits(first_line, count, lines));
     return source_->info().zero_is_white != (stack_.fires == Fires::black);
@@ -362,7 +359,7 @@ Result<bool> LayerReader::read_lines(std::int64_t layer, std::int64_t first_line
   for (std::int64_t line = 0; line < count;) {
     GRAVURE_TRY(const std::span<const std::byte> samples, read_samples(first_line + line, count - line));
     const std::int64_t now = static_cast<std::int64_t>(samples.size()) / held_line_bytes(stack_);
-    cut(samples, now, limit, lines.subspan(size(line * row_bytes(SampleType::bit, stack_.pixels))));
+    cut(samples, now, limit, lines.subspan(as_size(line * row_bytes(SampleType::bit, stack_.pixels))));
     line += now;
   }
   // Slices already know which end is deep; a thresholded picture still has its polarity.

@@ -5,10 +5,10 @@
 #include <limits>
 #include <string>
 
+#include "gravure/core/units.hpp"
+
 namespace gravure {
 namespace {
-
-constexpr double kUmPerMm = 1000;
 
 bool bit_of(std::span<const std::byte> bits, std::int64_t at) {
   return (bits[static_cast<std::size_t>(at / 8)] & static_cast<std::byte>(0x80U >> (at % 8))) != std::byte{0};

@@ -6,23 +6,20 @@
 #include <utility>
 #include <vector>
 
+#include "gravure/core/as_size.hpp"
 #include "gravure/raster/place.hpp"
 
 namespace gravure {
 namespace {
 
-constexpr std::int64_t kBlockBytes = std::int64_t{1} << 20;  // rows of the tile held at a time
-
-std::size_t size(std::int64_t bytes) {
-  return static_cast<std::size_t>(bytes);
-}
+constexpr std::int64_t kTileBytes = std::int64_t{1} << 20;  // rows of the tile held at a time
 
 std::int64_t tile_row_bytes(const ImageInfo& tile) {
   return row_bytes(tile.samples, tile.width);
 }
 
 std::int64_t block_rows(const ImageInfo& tile) {
-  return std::clamp<std::int64_t>(kBlockBytes / std::max<std::int64_t>(1, tile_row_bytes(tile)), 1,
+  return std::clamp<std::int64_t>(kTileBytes / std::max<std::int64_t>(1, tile_row_bytes(tile)), 1,
                                   std::max<std::int64_t>(1, tile.height));
 }
 
@@ -55,7 +52,7 @@ class TiledSource final : public ImageSource {
         count = std::min(count, block_rows_);
         GRAVURE_CHECK(lay_rows(mirrored ? tile_.height - in_tile - count : in_tile, count, mirrored, out));
       }
-      out = out.subspan(size(count * bytes));
+      out = out.subspan(as_size(count * bytes));
       first_row += count;
       row_count -= count;
     }
@@ -69,7 +66,7 @@ class TiledSource final : public ImageSource {
       GRAVURE_TRY(image_, opener_.open(tile_.path, tile_.page));
     }
     next_row_ = first_row + count;
-    Result<void> read = image_->read_rows(first_row, count, out.first(size(count * tile_row_bytes(tile_))));
+    Result<void> read = image_->read_rows(first_row, count, out.first(as_size(count * tile_row_bytes(tile_))));
     if (!read) {
       image_.reset();
     }
@@ -80,12 +77,12 @@ class TiledSource final : public ImageSource {
   Result<void> lay_rows(std::int64_t first_row, std::int64_t count, bool upwards, std::span<std::byte> out) {
     const std::int64_t tile_bytes = tile_row_bytes(tile_);
     const std::int64_t bytes = row_bytes(info_.samples, info_.width);
-    rows_.resize(size(block_rows_ * tile_bytes));
+    rows_.resize(as_size(block_rows_ * tile_bytes));
     GRAVURE_CHECK(read_tile(first_row, count, rows_));
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t row = upwards ? count - 1 - i : i;
-      lay_row(std::span<const std::byte>(rows_).subspan(size(row * tile_bytes), size(tile_bytes)),
-              out.subspan(size(i * bytes), size(bytes)));
+      lay_row(std::span<const std::byte>(rows_).subspan(as_size(row * tile_bytes), as_size(tile_bytes)),
+              out.subspan(as_size(i * bytes), as_size(bytes)));
     }
     return {};
   }
@@ -98,13 +95,13 @@ class TiledSource final : public ImageSource {
         raster::place_line(out, tile * tile_.width, row, tile_.width, {.mirror = mirrored});
         continue;
       }
-      const std::span<std::byte> place = out.subspan(size(tile) * row.size(), row.size());
+      const std::span<std::byte> place = out.subspan(as_size(tile) * row.size(), row.size());
       if (!mirrored) {
         std::memcpy(place.data(), row.data(), row.size());
         continue;
       }
       for (std::int64_t column = 0; column < tile_.width; ++column) {
-        std::memcpy(place.data() + column * sample, row.data() + (tile_.width - 1 - column) * sample, size(sample));
+        std::memcpy(place.data() + column * sample, row.data() + (tile_.width - 1 - column) * sample, as_size(sample));
       }
     }
   }

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gravure/core/as_size.hpp"
 #include "gravure/raster/copy_bits.hpp"
 
 namespace gravure {
 namespace {
 
-constexpr std::int64_t kBlockBytes = std::int64_t{1} << 20;  // lines of an image at a time
-
-std::size_t size(std::int64_t bytes) {
-  return static_cast<std::size_t>(bytes);
-}
+constexpr std::int64_t kLineBytes = std::int64_t{1} << 20;  // lines of an image at a time
 
 std::int64_t image_row_bytes(const LayerStack& stack) {
   return row_bytes(SampleType::bit, stack.pixels);
@@ -24,7 +21,7 @@ std::int64_t block_lines(const Plan& plan, const LayerStack& stack, std::int64_t
   if (stack.levels > 0 && !plan.carriage) {
     return lines;
   }
-  return std::clamp<std::int64_t>(kBlockBytes / std::max<std::int64_t>(1, image_row_bytes(stack)), 1,
+  return std::clamp<std::int64_t>(kLineBytes / std::max<std::int64_t>(1, image_row_bytes(stack)), 1,
                                   std::max<std::int64_t>(1, lines));
 }
 
@@ -122,13 +119,13 @@ void WindowReader::grant_memory(std::int64_t lines, std::int64_t bytes) {
 
 Result<bool> WindowReader::read_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
                                       std::span<std::byte> out) {
-  const std::span<std::byte> lines = out.first(size(count * header_.line_bytes()));
+  const std::span<std::byte> lines = out.first(as_size(count * header_.line_bytes()));
   std::memset(lines.data(), 0, lines.size());
   if (!header_.plan.carriage) {
     GRAVURE_CHECK(cut_lines(layer, first_line, count, lines));
     return false;
   }
-  const std::int64_t revolution = revolution_of_.at(size(layer));
+  const std::int64_t revolution = revolution_of_.at(as_size(layer));
   const bool held = first_line == held_line_ && count == held_lines_ && revolution >= held_revolution_ &&
                     revolution < held_revolution_ + held_revolutions_;
   if (!held) {
@@ -142,21 +139,21 @@ Result<bool> WindowReader::read_lines(std::int64_t layer, std::int64_t first_lin
 /// Bands and passes: a line shows one stretch of one line of its image.
 Result<void> WindowReader::cut_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
                                      std::span<std::byte> out) {
-  const std::int64_t revolution = revolution_of_.at(size(layer));
+  const std::int64_t revolution = revolution_of_.at(as_size(layer));
   const bool backwards = map_.runs_backwards(revolution);
   const std::int64_t first_row = backwards ? map_.image_line(revolution, first_line + count - 1) : first_line;
   const Stretch stretch = map_.stretch(revolution, first_line, 0);  // the same for all lines of a revolution
   const std::int64_t row = image_row_bytes(stack_);
   const std::int64_t block = block_lines(header_.plan, stack_, count);
-  rows_.resize(size(block * row));
+  rows_.resize(as_size(block * row));
   for (std::int64_t done = 0; done < count; done += block) {
     const std::int64_t now = std::min(block, count - done);
     GRAVURE_TRY(const bool invert, inner_.read_lines(layer, first_row + done, now, rows_));
     for (std::int64_t i = 0; i < now; ++i) {
       const std::int64_t line = backwards ? count - 1 - (done + i) : done + i;
-      raster::copy_bits(out.subspan(size(line * header_.line_bytes()), size(header_.line_bytes())), stretch.first_pixel,
-                        std::span<const std::byte>(rows_).subspan(size(i * row), size(row)), stretch.first_column,
-                        stretch.columns, invert);
+      raster::copy_bits(out.subspan(as_size(line * header_.line_bytes()), as_size(header_.line_bytes())),
+                        stretch.first_pixel, std::span<const std::byte>(rows_).subspan(as_size(i * row), as_size(row)),
+                        stretch.first_column, stretch.columns, invert);
     }
   }
   return {};
@@ -166,22 +163,22 @@ Result<void> WindowReader::cut_lines(std::int64_t layer, std::int64_t first_line
 void WindowReader::place_strips(std::int64_t revolution, std::int64_t first_line, std::int64_t count) {
   const std::int64_t lines = map_.lines();
   const std::int64_t layers = map_.stretches();
-  strips_.assign(size(layers), {});
+  strips_.assign(as_size(layers), {});
   std::int64_t offset = 0;
   for (std::int64_t layer = 0; layer < layers; ++layer) {
     const std::int64_t segment = (revolution - 1 - layer) * lines;  // steps of its first line 0: see ExposureMap
     const std::int64_t first = map_.column_after(segment + first_line);
     const std::int64_t end = map_.column_after(segment + held_revolutions_ * lines + first_line + count - 1);
-    Strip& strip = strips_[size(layer)];
+    Strip& strip = strips_[as_size(layer)];
     strip.first_byte = std::clamp<std::int64_t>(first, 0, map_.columns()) / 8;
     strip.bytes = (std::clamp<std::int64_t>(end, 0, map_.columns()) + 7) / 8 - strip.first_byte;
     strip.offset = offset;
     offset += count * strip.bytes;
   }
-  if (held_.capacity() < size(offset)) {
+  if (held_.capacity() < as_size(offset)) {
     held_ = {};  // not the old panel beside the new one
   }
-  held_.resize(size(offset));
+  held_.resize(as_size(offset));
 }
 
 /// Lines [first, first + count) of one image, counted in the panel, into its strip.
@@ -194,7 +191,7 @@ Result<void> WindowReader::fill_strip(std::size_t image, std::int64_t first, std
   GRAVURE_TRY(const bool invert, inner_.read_lines(static_cast<std::int64_t>(image), held_line_ + first, count, rows_));
   for (std::int64_t i = 0; i < count; ++i) {
     std::byte* const kept = held_.data() + strip.offset + (first + i) * strip.bytes;
-    std::memcpy(kept, rows_.data() + i * row + strip.first_byte, size(strip.bytes));
+    std::memcpy(kept, rows_.data() + i * row + strip.first_byte, as_size(strip.bytes));
     if (invert) {
       std::for_each(kept, kept + strip.bytes, [](std::byte& byte) { byte = ~byte; });
     }
@@ -211,7 +208,7 @@ Result<void> WindowReader::load_panel(std::int64_t revolution, std::int64_t firs
   held_revolutions_ = std::min(fitting_revolutions(header_.plan, count, panel_bytes_), end - revolution);
   place_strips(revolution, first_line, count);
   const std::int64_t block = block_lines(header_.plan, stack_, count);
-  rows_.resize(size(block * image_row_bytes(stack_)));
+  rows_.resize(as_size(block * image_row_bytes(stack_)));
   const auto blocks = (count + block - 1) / block;
   const auto images = static_cast<std::int64_t>(strips_.size());
   // A map is decoded once for all its levels; of several files each is read to its end before the next is opened.
@@ -219,7 +216,7 @@ Result<void> WindowReader::load_panel(std::int64_t revolution, std::int64_t firs
   for (std::int64_t i = 0; i < images * blocks; ++i) {
     const std::int64_t at = (one_map ? i / images : i % blocks) * block;
     const std::int64_t image = one_map ? i % images : i / blocks;
-    GRAVURE_CHECK(fill_strip(size(image), at, std::min(block, count - at)));
+    GRAVURE_CHECK(fill_strip(as_size(image), at, std::min(block, count - at)));
   }
   return {};
 }
@@ -228,15 +225,15 @@ void WindowReader::expose(std::int64_t revolution, std::int64_t first_line, std:
                           std::span<std::byte> out) const {
   const std::span<const std::byte> held(held_);
   for (std::int64_t i = 0; i < count; ++i) {
-    const std::span<std::byte> line = out.subspan(size(i * header_.line_bytes()), size(header_.line_bytes()));
+    const std::span<std::byte> line = out.subspan(as_size(i * header_.line_bytes()), as_size(header_.line_bytes()));
     for (std::int64_t s = 0; s < map_.stretches(); ++s) {
       const Stretch stretch = map_.stretch(revolution, first_line + i, s);
       if (stretch.columns == 0) {
         continue;
       }
-      const Strip& strip = strips_[size(stretch.layer)];
+      const Strip& strip = strips_[as_size(stretch.layer)];
       raster::copy_bits(line, stretch.first_pixel,
-                        held.subspan(size(strip.offset + i * strip.bytes), size(strip.bytes)),
+                        held.subspan(as_size(strip.offset + i * strip.bytes), as_size(strip.bytes)),
                         stretch.first_column - strip.first_byte * 8, stretch.columns);
     }
   }

@@ -6,6 +6,8 @@
 #if defined(__x86_64__)
 #define GRAVURE_HAS_X86_KERNELS 1
 
+#include <immintrin.h>
+
 /// For functions, not for files: a header inlined into a file built with -mavx2 would reach other processors.
 #define GRAVURE_AVX2 __attribute__((target("avx2,bmi,bmi2,lzcnt,popcnt")))
 
@@ -14,6 +16,10 @@ namespace gravure::raster::avx2 {
 inline bool cpu_has_avx2() {
   return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi") != 0 &&
          __builtin_cpu_supports("bmi2") != 0 && __builtin_cpu_supports("popcnt") != 0;
+}
+
+GRAVURE_AVX2 inline __m256i load(const std::byte* from) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
 }
 
 void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t width,

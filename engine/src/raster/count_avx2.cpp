@@ -11,10 +11,6 @@
 namespace gravure::raster::avx2 {
 namespace {
 
-GRAVURE_AVX2 inline __m256i load(const std::byte* from) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-}
-
 /// Ones of the four 64-bit words: nibbles by table, then sums over eight bytes.
 GRAVURE_AVX2 inline __m256i ones(__m256i bits) {
   const __m256i nibble = _mm256_set1_epi8(0x0F);

@@ -12,10 +12,6 @@
 namespace gravure::raster::avx2 {
 namespace {
 
-GRAVURE_AVX2 inline __m256i load(const std::byte* from) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-}
-
 GRAVURE_AVX2 inline void store(std::byte* to, __m256i bytes) {
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), bytes);
 }
@@ -89,7 +85,7 @@ GRAVURE_AVX2 inline void fill_from(std::byte* dst, std::int64_t bytes, const std
   }
 }
 
-struct Leaf {
+struct PlaceLeaf {
   GRAVURE_AVX2 static void copy_bits(std::byte* dst, std::int64_t bytes, const std::byte* src, std::int64_t first,
                                      unsigned flip) {
     if (bytes < 32) {
@@ -113,12 +109,12 @@ struct Leaf {
 
 void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t width,
                 PlaceOptions options) {
-  detail::place_line_with<Leaf>(dst, dst_bit, src, width, options);
+  detail::place_line_with<PlaceLeaf>(dst, dst_bit, src, width, options);
 }
 
 void place_rows(std::span<std::byte> dst, std::span<const std::byte> src, std::int64_t width, std::int64_t rows,
                 RowOptions options) {
-  detail::place_rows_with<Leaf>(dst, src, width, rows, options);
+  detail::place_rows_with<PlaceLeaf>(dst, src, width, rows, options);
 }
 
 }  // namespace gravure::raster::avx2

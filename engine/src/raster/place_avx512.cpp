@@ -41,7 +41,7 @@ constexpr auto kMatrices = [] {
   return all;
 }();
 
-constexpr auto kLanes = [] {
+constexpr auto kByteLanes = [] {
   std::array<std::int8_t, 64> lanes{};
   for (std::size_t i = 0; i < 64; ++i) {
     lanes[i] = static_cast<std::int8_t>(i);
@@ -60,7 +60,7 @@ struct Mill {
         after(_mm512_set1_epi64(
             static_cast<long long>(kMatrices[mirror ? 1 : 0][static_cast<std::size_t>(phase)].after))),
         flips(_mm512_set1_epi8(static_cast<char>(flip))),
-        lanes(_mm512_loadu_si512(kLanes.data())) {}
+        lanes(_mm512_loadu_si512(kByteLanes.data())) {}
 
   /// The `kPhase` says whether there is a byte after; else it is neither read nor used.
   template <bool kPhase, bool kMirror>
@@ -105,7 +105,7 @@ GRAVURE_AVX512 void fill_from(std::byte* dst, std::int64_t bytes, const std::byt
   }
 }
 
-struct Leaf {
+struct PlaceLeaf {
   static void copy_bits(std::byte* dst, std::int64_t bytes, const std::byte* src, std::int64_t first, unsigned flip) {
     fill_from<false>(dst, bytes, src, first, flip);
   }
@@ -118,12 +118,12 @@ struct Leaf {
 
 void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t width,
                 PlaceOptions options) {
-  detail::place_line_with<Leaf>(dst, dst_bit, src, width, options);
+  detail::place_line_with<PlaceLeaf>(dst, dst_bit, src, width, options);
 }
 
 void place_rows(std::span<std::byte> dst, std::span<const std::byte> src, std::int64_t width, std::int64_t rows,
                 RowOptions options) {
-  detail::place_rows_with<Leaf>(dst, src, width, rows, options);
+  detail::place_rows_with<PlaceLeaf>(dst, src, width, rows, options);
 }
 
 }  // namespace gravure::raster::avx512

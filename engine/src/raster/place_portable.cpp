@@ -14,7 +14,7 @@ std::uint64_t window(const std::byte* at, int phase) {
   return phase == 0 ? word : (word << phase) | (std::to_integer<std::uint64_t>(at[8]) >> (8 - phase));
 }
 
-struct Leaf {
+struct PlaceLeaf {
   static void copy_bits(std::byte* dst, std::int64_t bytes, const std::byte* src, std::int64_t first, unsigned flip) {
     const std::byte* at = src + (first >> 3);
     const int phase = static_cast<int>(first & 7);
@@ -46,21 +46,21 @@ struct Leaf {
 }  // namespace
 
 void copy_bits(std::byte* dst, std::int64_t bytes, const std::byte* src, std::int64_t first, unsigned flip) {
-  Leaf::copy_bits(dst, bytes, src, first, flip);
+  PlaceLeaf::copy_bits(dst, bytes, src, first, flip);
 }
 
 void mirror_bits(std::byte* dst, std::int64_t bytes, const std::byte* src, std::int64_t end, unsigned flip) {
-  Leaf::mirror_bits(dst, bytes, src, end, flip);
+  PlaceLeaf::mirror_bits(dst, bytes, src, end, flip);
 }
 
 void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t width,
                 PlaceOptions options) {
-  place_line_with<Leaf>(dst, dst_bit, src, width, options);
+  place_line_with<PlaceLeaf>(dst, dst_bit, src, width, options);
 }
 
 void place_rows(std::span<std::byte> dst, std::span<const std::byte> src, std::int64_t width, std::int64_t rows,
                 RowOptions options) {
-  place_rows_with<Leaf>(dst, src, width, rows, options);
+  place_rows_with<PlaceLeaf>(dst, src, width, rows, options);
 }
 
 }  // namespace gravure::raster::portable

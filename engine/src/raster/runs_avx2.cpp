@@ -20,7 +20,7 @@ GRAVURE_AVX2 inline std::uint64_t write_four(std::uint32_t* to, std::uint64_t di
   return _blsr_u64(differ);
 }
 
-struct Leaf {
+struct RunsLeaf {
   /// Always writes in eights, up to seven beyond the last: a loop whose length is guessed wrong costs more.
   GRAVURE_AVX2 static std::size_t write_edges(std::uint32_t* to, std::uint64_t differ, std::uint32_t first) {
     const auto count = static_cast<std::size_t>(_mm_popcnt_u64(differ));
@@ -35,7 +35,7 @@ struct Leaf {
 }  // namespace
 
 GRAVURE_AVX2 void append_runs(std::span<const std::byte> line, std::int64_t width, std::vector<std::uint32_t>& edges) {
-  detail::append_runs_with<Leaf>(line, width, edges);
+  detail::append_runs_with<RunsLeaf>(line, width, edges);
 }
 
 }  // namespace gravure::raster::avx2

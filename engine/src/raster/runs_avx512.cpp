@@ -23,7 +23,7 @@ GRAVURE_AVX512 inline void write_16(std::uint32_t* to, __m128i positions, __m512
   _mm512_storeu_si512(to, _mm512_add_epi32(_mm512_cvtepu8_epi32(positions), first));
 }
 
-struct Leaf {
+struct RunsLeaf {
   /// The positions of the ones pressed together, then widened sixteen at a time.
   GRAVURE_AVX512 static std::size_t write_edges(std::uint32_t* to, std::uint64_t differ, std::uint32_t first) {
     const auto count = static_cast<std::size_t>(_mm_popcnt_u64(differ));
@@ -48,7 +48,7 @@ struct Leaf {
 
 GRAVURE_AVX512 void append_runs(std::span<const std::byte> line, std::int64_t width,
                                 std::vector<std::uint32_t>& edges) {
-  detail::append_runs_with<Leaf>(line, width, edges);
+  detail::append_runs_with<RunsLeaf>(line, width, edges);
 }
 
 }  // namespace gravure::raster::avx512

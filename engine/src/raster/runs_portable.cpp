@@ -6,7 +6,7 @@
 namespace gravure::raster::portable {
 namespace {
 
-struct Leaf {
+struct RunsLeaf {
   static std::size_t write_edges(std::uint32_t* to, std::uint64_t differ, std::uint32_t first) {
     std::size_t count = 0;
     for (; differ != 0; differ &= differ - 1) {
@@ -19,7 +19,7 @@ struct Leaf {
 }  // namespace
 
 void append_runs(std::span<const std::byte> line, std::int64_t width, std::vector<std::uint32_t>& edges) {
-  detail::append_runs_with<Leaf>(line, width, edges);
+  detail::append_runs_with<RunsLeaf>(line, width, edges);
 }
 
 }  // namespace gravure::raster::portable

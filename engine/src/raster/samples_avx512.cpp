@@ -98,7 +98,7 @@ GRAVURE_AVX512 void cut_row(std::byte* dst, const Sample* src, std::int64_t widt
 }
 
 /// A piece holds its samples backwards in groups of eight, so that a comparison is a word of output.
-struct Leaf {
+struct SamplesLeaf {
   template <class Sample>
   static void threshold_row(std::byte* dst, const Sample* src, std::int64_t width, Sample limit, Where where) {
     where == Where::at_least ? cut_row<Where::at_least>(dst, src, width, limit)
@@ -165,27 +165,27 @@ struct Leaf {
 
 void threshold_u8(std::span<std::byte> dst, std::span<const std::uint8_t> src, std::int64_t width, std::int64_t rows,
                   std::uint8_t limit, Where where) {
-  detail::threshold_rows_with<Leaf>(dst, src, width, rows, limit, where);
+  detail::threshold_rows_with<SamplesLeaf>(dst, src, width, rows, limit, where);
 }
 
 void threshold_u16(std::span<std::byte> dst, std::span<const std::uint16_t> src, std::int64_t width, std::int64_t rows,
                    std::uint16_t limit, Where where) {
-  detail::threshold_rows_with<Leaf>(dst, src, width, rows, limit, where);
+  detail::threshold_rows_with<SamplesLeaf>(dst, src, width, rows, limit, where);
 }
 
 void threshold_f32(std::span<std::byte> dst, std::span<const float> src, std::int64_t width, std::int64_t rows,
                    float limit, Where where) {
-  detail::threshold_rows_with<Leaf>(dst, src, width, rows, limit, where);
+  detail::threshold_rows_with<SamplesLeaf>(dst, src, width, rows, limit, where);
 }
 
 void slice_u8(std::span<const std::span<std::byte>> layers, std::int64_t first_level, std::span<const std::uint8_t> src,
               std::int64_t width, std::int64_t rows, const SliceRange& range) {
-  detail::slice_with<Leaf>(layers, first_level, src, width, rows, range);
+  detail::slice_with<SamplesLeaf>(layers, first_level, src, width, rows, range);
 }
 
 void slice_u16(std::span<const std::span<std::byte>> layers, std::int64_t first_level,
                std::span<const std::uint16_t> src, std::int64_t width, std::int64_t rows, const SliceRange& range) {
-  detail::slice_with<Leaf>(layers, first_level, src, width, rows, range);
+  detail::slice_with<SamplesLeaf>(layers, first_level, src, width, rows, range);
 }
 
 }  // namespace gravure::raster::avx512

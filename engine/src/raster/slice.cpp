@@ -11,7 +11,7 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;  // (2 level + 1) R is below 2^95
 
-struct Leaf {
+struct SliceLeaf {
   template <class Sample>
   static void prepare(detail::Piece<Sample>& piece, const Sample* src, Sample flip) {
     Sample least = static_cast<Sample>(src[0] ^ flip);
@@ -55,13 +55,13 @@ std::int64_t slice_count(std::uint32_t sample, const SliceRange& range) {
 void portable::slice_u8(std::span<const std::span<std::byte>> layers, std::int64_t first_level,
                         std::span<const std::uint8_t> src, std::int64_t width, std::int64_t rows,
                         const SliceRange& range) {
-  detail::slice_with<Leaf>(layers, first_level, src, width, rows, range);
+  detail::slice_with<SliceLeaf>(layers, first_level, src, width, rows, range);
 }
 
 void portable::slice_u16(std::span<const std::span<std::byte>> layers, std::int64_t first_level,
                          std::span<const std::uint16_t> src, std::int64_t width, std::int64_t rows,
                          const SliceRange& range) {
-  detail::slice_with<Leaf>(layers, first_level, src, width, rows, range);
+  detail::slice_with<SliceLeaf>(layers, first_level, src, width, rows, range);
 }
 
 }  // namespace gravure::raster

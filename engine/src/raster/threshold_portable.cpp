@@ -86,7 +86,7 @@ void float_row(std::byte* dst, const float* src, std::int64_t width, float limit
   }
 }
 
-struct Leaf {
+struct ThresholdLeaf {
   template <class Sample>
   static void threshold_row(std::byte* dst, const Sample* src, std::int64_t width, Sample limit, Where where) {
     portable::threshold_row(dst, src, width, limit, where);
@@ -110,17 +110,17 @@ void threshold_row(std::byte* dst, const float* src, std::int64_t width, float l
 
 void threshold_u8(std::span<std::byte> dst, std::span<const std::uint8_t> src, std::int64_t width, std::int64_t rows,
                   std::uint8_t limit, Where where) {
-  threshold_rows_with<Leaf>(dst, src, width, rows, limit, where);
+  threshold_rows_with<ThresholdLeaf>(dst, src, width, rows, limit, where);
 }
 
 void threshold_u16(std::span<std::byte> dst, std::span<const std::uint16_t> src, std::int64_t width, std::int64_t rows,
                    std::uint16_t limit, Where where) {
-  threshold_rows_with<Leaf>(dst, src, width, rows, limit, where);
+  threshold_rows_with<ThresholdLeaf>(dst, src, width, rows, limit, where);
 }
 
 void threshold_f32(std::span<std::byte> dst, std::span<const float> src, std::int64_t width, std::int64_t rows,
                    float limit, Where where) {
-  threshold_rows_with<Leaf>(dst, src, width, rows, limit, where);
+  threshold_rows_with<ThresholdLeaf>(dst, src, width, rows, limit, where);
 }
 
 }  // namespace gravure::raster::portable

@@ -80,7 +80,7 @@ struct Plane {
 };
 
 std::vector<Plane> find_planes(const CadSurface& cad, const ScanPoints& scan, const IcpState& state) {
-  constexpr std::size_t kNeighbours = 6;
+  constexpr std::size_t kPlanePoints = 6;
   const LocalPlane local(cad);
   const double beside = largest_beside(cad, state.radius_mm);
   const double reach = std::hypot(state.radius_mm, beside);
@@ -92,7 +92,7 @@ std::vector<Plane> find_planes(const CadSurface& cad, const ScanPoints& scan, co
     if (cad.flat_facets || cad.facing == Facing::none) {
       near.assign(1, cad.tree->nearest(place, reach));
     } else {
-      cad.tree->nearest(place, reach, kNeighbours, near);
+      cad.tree->nearest(place, reach, kPlanePoints, near);
     }
     if (near.empty() || near.front().index < 0) {
       continue;

@@ -9,7 +9,7 @@
 namespace gravure::registration {
 namespace {
 
-constexpr std::size_t kFewPoints = 300;
+constexpr std::size_t kStartPoints = 300;
 constexpr std::size_t kGivenPoints = 800;  // a near start is tried with care: little of the scan may be on the CAD
 constexpr std::size_t kMorePoints = 1500;
 constexpr int kShortIterations = 12;
@@ -153,7 +153,7 @@ FoundStart search_start(const CadSurface& cad, const ScanPoints& scan, const Sim
   IcpSettings settings;
   settings.least_step = 1e-4;
   settings.most_iterations = kShortIterations;
-  const ScanPoints few = about(scan, kFewPoints);
+  const ScanPoints few = about(scan, kStartPoints);
   std::vector<Candidate> all = candidates(cad, few, given);
   const ScanPoints for_given = about(scan, kGivenPoints);
   for (Candidate& candidate : all) {

@@ -5,14 +5,11 @@
 #include <cmath>
 #include <string>
 
+#include "gravure/core/as_size.hpp"
 #include "gravure/raster/count.hpp"
 
 namespace gravure::report {
 namespace {
-
-std::size_t index_of(std::int64_t value) {
-  return static_cast<std::size_t>(value);
-}
 
 /// Bits [from, to) of one byte, 0 the most significant.
 int count_in_byte(std::byte byte, int from, int to) {
@@ -51,28 +48,28 @@ std::int64_t count_between(std::span<const std::byte> row, std::int64_t from, st
   const int head = static_cast<int>(from % 8);
   const int tail = static_cast<int>(to - 8 * last);
   if (first == last) {
-    return count_in_byte(row[index_of(first)], head, tail);
+    return count_in_byte(row[as_size(first)], head, tail);
   }
-  return count_in_byte(row[index_of(first)], head, 8) + count_in_byte(row[index_of(last)], 0, tail) +
-         raster::popcount(row.subspan(index_of(first + 1), index_of(last - first - 1)));
+  return count_in_byte(row[as_size(first)], head, 8) + count_in_byte(row[as_size(last)], 0, tail) +
+         raster::popcount(row.subspan(as_size(first + 1), as_size(last - first - 1)));
 }
 
 AreaCount::AreaCount(const Extent& picture, const Extent& cells) : picture_(picture), cells_(cells) {
   for (std::int64_t column = 0; column <= cells.width; ++column) {
     edges_.push_back(cell_begin(column, cells.width, picture.width));
   }
-  ones_.assign(index_of(cells.area()), 0);
+  ones_.assign(as_size(cells.area()), 0);
 }
 
 std::int64_t AreaCount::pixels_of(std::int64_t column, std::int64_t row) const noexcept {
   const std::int64_t rows =
       cell_begin(row + 1, cells_.height, picture_.height) - cell_begin(row, cells_.height, picture_.height);
-  return (edges_[index_of(column + 1)] - edges_[index_of(column)]) * rows;
+  return (edges_[as_size(column + 1)] - edges_[as_size(column)]) * rows;
 }
 
 Result<void> AreaCount::add(std::span<const std::byte> rows, std::int64_t count) {
   const std::int64_t bytes = (picture_.width + 7) / 8;
-  if (count < 0 || count > picture_.height - next_row_ || rows.size() != index_of(count * bytes)) {
+  if (count < 0 || count > picture_.height - next_row_ || rows.size() != as_size(count * bytes)) {
     return Error{ErrorCode::bad_argument, "area count: " + std::to_string(count) + " rows in " +
                                               std::to_string(rows.size()) + " bytes, " +
                                               std::to_string(picture_.height - next_row_) + " rows are left"};
@@ -81,8 +78,8 @@ Result<void> AreaCount::add(std::span<const std::byte> rows, std::int64_t count)
     while (next_row_ >= cell_begin(cell_row_ + 1, cells_.height, picture_.height)) {
       ++cell_row_;
     }
-    const auto row = rows.subspan(index_of(i * bytes), index_of(bytes));
-    const auto ones = std::span(ones_).subspan(index_of(cell_row_ * cells_.width), index_of(cells_.width));
+    const auto row = rows.subspan(as_size(i * bytes), as_size(bytes));
+    const auto ones = std::span(ones_).subspan(as_size(cell_row_ * cells_.width), as_size(cells_.width));
     for (std::size_t column = 0; column < ones.size(); ++column) {
       ones[column] += count_between(row, edges_[column], edges_[column + 1]);
     }

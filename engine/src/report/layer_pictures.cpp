@@ -9,16 +9,13 @@
 #include <thread>
 #include <utility>
 
+#include "gravure/core/as_size.hpp"
 #include "gravure/core/exposure_map.hpp"
 #include "gravure/twin/unroll.hpp"
 #include "seam_window.hpp"
 
 namespace gravure::report {
 namespace {
-
-std::size_t index_of(std::int64_t value) {
-  return static_cast<std::size_t>(value);
-}
 
 /// Images as (source, level), in the order in which unroll_layer() numbers them.
 std::vector<std::pair<std::int64_t, std::int64_t>> images_of(const ProgramHeader& header) {
@@ -31,7 +28,7 @@ std::vector<std::pair<std::int64_t, std::int64_t>> images_of(const ProgramHeader
     return images;
   }
   for (std::int64_t r = 0; r < image_layers(header); ++r) {
-    const StoredLayer& stored = header.layers[header.layer_of_revolution[index_of(r)]];
+    const StoredLayer& stored = header.layers[header.layer_of_revolution[as_size(r)]];
     images.emplace_back(stored.source, stored.level);
   }
   return images;
@@ -39,9 +36,9 @@ std::vector<std::pair<std::int64_t, std::int64_t>> images_of(const ProgramHeader
 
 /// `most` numbers of 0 .. count - 1, evenly, the first and the last among them.
 std::vector<bool> evenly(std::int64_t count, std::int64_t most) {
-  std::vector<bool> chosen(index_of(count), count <= most);
+  std::vector<bool> chosen(as_size(count), count <= most);
   for (std::int64_t i = 0; i < most && count > most; ++i) {
-    chosen[index_of(most == 1 ? 0 : i * (count - 1) / (most - 1))] = true;
+    chosen[as_size(most == 1 ? 0 : i * (count - 1) / (most - 1))] = true;
   }
   return chosen;
 }
@@ -71,7 +68,7 @@ class Work {
       end_ = next_ + 1;
       shown_.assign(shown_.size(), true);
       revolutions_.assign(revolutions_.size(), 0);
-      revolutions_[index_of(next_)] = 1;
+      revolutions_[as_size(next_)] = 1;
     }
     plan_pictures(std::min(options.most_cells, options.most_shown_cells / shown));
   }
@@ -117,7 +114,7 @@ class Work {
       }
     }
     pictures_.pulses.assign(pictures_.pixels.size(), 0);
-    pictures_.seam_pulses.assign(index_of(pictures_.seam_extent().area()), 0);
+    pictures_.seam_pulses.assign(as_size(pictures_.seam_extent().area()), 0);
     pictures_.layers.resize(images_.size());
     for (const std::int64_t revolutions : revolutions_) {
       pictures_.exposures += revolutions;
@@ -143,23 +140,23 @@ class Work {
   void keep(std::int64_t layer, const AreaCount& count, const SeamWindow& seam) {
     const bool white = header_.fires == Fires::white;
     const std::scoped_lock lock(mutex_);
-    LayerPicture& picture = pictures_.layers[index_of(layer)];
+    LayerPicture& picture = pictures_.layers[as_size(layer)];
     picture.layer = layer;
-    picture.source = images_[index_of(layer)].first;
-    picture.level = images_[index_of(layer)].second;
-    picture.revolutions = revolutions_[index_of(layer)];
+    picture.source = images_[as_size(layer)].first;
+    picture.level = images_[as_size(layer)].second;
+    picture.revolutions = revolutions_[as_size(layer)];
     for (std::size_t cell = 0; cell < pictures_.pixels.size(); ++cell) {
       const std::int64_t fired = white ? count.ones()[cell] : pictures_.pixels[cell] - count.ones()[cell];
       picture.fired_pixels += fired;
       pictures_.pulses[cell] += fired * picture.revolutions;
-      if (shown_[index_of(layer)]) {
+      if (shown_[as_size(layer)]) {
         picture.shares.push_back(share_of(fired, pictures_.pixels[cell]));
       }
     }
     for (std::size_t pixel = 0; pixel < seam.ones().size(); ++pixel) {
       const bool fired = seam.ones()[pixel] == white;
       pictures_.seam_pulses[pixel] += fired ? picture.revolutions : 0;
-      if (shown_[index_of(layer)]) {
+      if (shown_[as_size(layer)]) {
         picture.seam.push_back(fired ? std::byte{255} : std::byte{0});
       }
     }
@@ -195,12 +192,12 @@ class Work {
 void add_columns(LayerPictures& pictures) {
   const Extent& cells = pictures.cells;
   const std::int64_t columns = pictures.lines_are_rows ? cells.width : cells.height;
-  pictures.column_pulses.assign(index_of(columns), 0);
-  pictures.column_pixels.assign(index_of(columns), 0);
+  pictures.column_pulses.assign(as_size(columns), 0);
+  pictures.column_pixels.assign(as_size(columns), 0);
   for (std::int64_t cell = 0; cell < cells.area(); ++cell) {
-    const std::size_t column = index_of(pictures.lines_are_rows ? cell % cells.width : cell / cells.width);
-    pictures.column_pulses[column] += pictures.pulses[index_of(cell)];
-    pictures.column_pixels[column] += pictures.pixels[index_of(cell)];
+    const std::size_t column = as_size(pictures.lines_are_rows ? cell % cells.width : cell / cells.width);
+    pictures.column_pulses[column] += pictures.pulses[as_size(cell)];
+    pictures.column_pixels[column] += pictures.pixels[as_size(cell)];
   }
 }
 
@@ -213,7 +210,7 @@ std::vector<std::int64_t> exposures_of_images(const ProgramHeader& header) {
   }
   std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> revolutions;
   for (std::int64_t r = 0; r < revolutions_per_band(header.plan); ++r) {
-    const StoredLayer& stored = header.layers[header.layer_of_revolution[index_of(r)]];
+    const StoredLayer& stored = header.layers[header.layer_of_revolution[as_size(r)]];
     ++revolutions[{stored.source, stored.level}];
   }
   std::vector<std::int64_t> each;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "gravure/core/as_size.hpp"
 #include "gravure/core/board_runs.hpp"
 #include "gravure/core/spin_phase.hpp"
 #include "gravure/scan/job_trajectory.hpp"
@@ -11,12 +12,8 @@
 namespace gravure::report {
 namespace {
 
-std::size_t index_of(std::int64_t value) {
-  return static_cast<std::size_t>(value);
-}
-
 bool bit(std::span<const std::byte> bits, std::int64_t at) {
-  return ((static_cast<unsigned>(bits[index_of(at / 8)]) >> (7 - at % 8)) & 1U) != 0;
+  return ((static_cast<unsigned>(bits[as_size(at / 8)]) >> (7 - at % 8)) & 1U) != 0;
 }
 
 /// The bits of one line in time order; valid until `chunk` loads another.
@@ -24,9 +21,9 @@ Result<std::span<const std::byte>> bits_of_line(LineSource& program, ProgramChun
                                                 std::int64_t line) {
   const ProgramHeader& header = program.header();
   GRAVURE_CHECK(
-      chunk.load(program, {header.layer_of_revolution[index_of(revolution)], line / program.lines_per_chunk()}));
-  const std::size_t bytes = index_of(header.line_bytes());
-  return chunk.lines_for(header, revolution).subspan(index_of(line - chunk.first_line()) * bytes, bytes);
+      chunk.load(program, {header.layer_of_revolution[as_size(revolution)], line / program.lines_per_chunk()}));
+  const std::size_t bytes = as_size(header.line_bytes());
+  return chunk.lines_for(header, revolution).subspan(as_size(line - chunk.first_line()) * bytes, bytes);
 }
 
 void add_gate(std::span<const std::byte> bits, std::int64_t pixels, LineView& view) {

@@ -10,11 +10,11 @@
 #include <span>
 
 #include "gravure/core/csv_rows.hpp"
+#include "gravure/core/units.hpp"
 
 namespace gravure::scan {
 namespace {
 
-constexpr double kUmPerMm = 1000;
 constexpr double kMostLanding_mm = 1e4;
 
 /// Sums up the normal equations row by row: each row is a few weighted nodes.

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gravure/core/units.hpp"
+
 namespace gravure::scan {
 namespace {
 
-constexpr double kUmPerMm = 1000;
 constexpr double kMostSlope = 0.5;  ///< of the error along the grid: keeps the inverse unique and its search converging
 constexpr double kConverged = 1e-13;  ///< mm
 constexpr double kEdgeSlack = 1e-9;   ///< mm beyond the last node that rounding may put a point on the edge

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gravure/core/exposure_map.hpp"
+#include "gravure/core/units.hpp"
 #include "set_point_at.hpp"
 
 namespace gravure::scan {
@@ -14,7 +15,6 @@ using kinematics::JointPositions;
 using kinematics::Vector3;
 
 constexpr double kTurn = 2 * 3.14159265358979323846;
-constexpr double kUmPerMm = 1000;
 
 /// From 0 to 1, speed and acceleration 0 at both ends: 10 x^3 - 15 x^4 + 6 x^5.
 double blend(double x) noexcept {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "gravure/core/units.hpp"
 #include "set_point_at.hpp"
 
 namespace gravure::scan {
@@ -9,8 +10,6 @@ namespace {
 
 using kinematics::FieldPoint;
 using kinematics::Vector3;
-
-constexpr double kUmPerMm = 1000;
 
 }  // namespace
 

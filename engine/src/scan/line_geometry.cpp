@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "gravure/kinematics/machines.hpp"
 
 namespace gravure::scan {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Result<void> check_positive(const char* field, double value) {
   if (value > 0 && value <= 1e6) {
@@ -22,7 +21,7 @@ Result<void> check_positive(const char* field, double value) {
 }  // namespace
 
 CylinderLines cylinder_lines(const Plan& plan, double offset_deg) {
-  return {to_double(plan.rotary.circumference_um) / 1000 / kPi, plan.rotary.lines_per_revolution,
+  return {to_double(plan.rotary.circumference_um) / 1000 / std::numbers::pi, plan.rotary.lines_per_revolution,
           to_double(plan.line.pixel_pitch_um) / 1000, offset_deg, 0};
 }
 
@@ -44,12 +43,12 @@ Result<LineGeometry> cylinder_geometry(const LineTiming& timing, const CylinderL
                                                       -kMostIncidenceDeg, kMostIncidenceDeg)};
   }
   const double radius = lines.diameter_mm / 2;
-  const double offset = lines.offset_deg * kPi / 180;
+  const double offset = lines.offset_deg * std::numbers::pi / 180;
   const auto slots = static_cast<double>(timing.slots);
   LineGeometry geometry;
   geometry.machine = kinematics::cylinder_machine(radius * std::cos(offset), head);
   geometry.at_centre = {0, 0, 0};
-  geometry.per_slot = {2 * kPi / static_cast<double>(lines.lines_per_revolution) / slots,
+  geometry.per_slot = {2 * std::numbers::pi / static_cast<double>(lines.lines_per_revolution) / slots,
                        lines.carriage_mm_per_line / slots, 0};
   geometry.pixel_pitch_mm = lines.pixel_pitch_mm;
   geometry.centre_v_mm = radius * std::sin(offset);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gravure/core/units.hpp"
 #include "gravure/scan/landing.hpp"
 #include "set_point_at.hpp"
 
@@ -15,7 +16,6 @@ using kinematics::FieldPoint;
 using kinematics::ScanHead;
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
-constexpr double kUmPerMm = 1000;
 
 Result<std::vector<SetPoint>> set_points(const LineTrajectory& trajectory, Direction direction) {
   const LineTiming& timing = trajectory.path.timing();

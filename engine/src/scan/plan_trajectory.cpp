@@ -1,9 +1,9 @@
 #include "gravure/scan/plan_trajectory.hpp"
 
+#include <numbers>
+
 namespace gravure::scan {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 std::optional<double> number_of(const std::optional<Rational>& value) {
   return value ? std::optional(to_double(*value)) : std::nullopt;
@@ -22,7 +22,7 @@ Result<void> check_has_scanner(const Plan& plan) {
 kinematics::ScanHead scan_head(const ScannerPlan& scanner) {
   kinematics::ScanHead head;
   head.lens = scanner.tilt_deg_per_mm > 0 ? kinematics::Lens::f_theta : kinematics::Lens::telecentric;
-  head.tilt_rad_per_mm = to_double(scanner.tilt_deg_per_mm) * kPi / 180;
+  head.tilt_rad_per_mm = to_double(scanner.tilt_deg_per_mm) * std::numbers::pi / 180;
   head.field_mm = to_double(scanner.field_mm);
   head.resolution_bits = scanner.resolution_bits;
   head.lag_us = scanner.lag_us;

@@ -9,8 +9,8 @@
 namespace gravure::sync_plan {
 namespace {
 
-constexpr std::int64_t kMostSeeds = 4'294'967'295;  // from go to the first tick: the board's first_tick
-constexpr std::size_t kMostSegments = 256;          // of the board's list
+constexpr std::int64_t kMostSeedsToTick = 4'294'967'295;  // from go to the first tick: the board's first_tick
+constexpr std::size_t kMostSegments = 256;                // of the board's list
 
 /// An axis of the plan with its section of the job.
 struct Axis {
@@ -92,11 +92,12 @@ void check_length(const Axis& axis, const AxisSpin& spin, Violations& violations
                             std::to_string(spin.down.segments.size()) + " segments, and the board lists " +
                             std::to_string(kMostSegments));
   }
-  if (seeds_of(spin.up, axis.request) <= kMostSeeds) {
+  if (seeds_of(spin.up, axis.request) <= kMostSeedsToTick) {
     return;
   }
   const Rational speed = marking_speed(axis.request);
-  const Rational most_s = Rational(kMostSeeds) * Rational(axis.request.ticks_per_seed) / Rational(axis.request.fpga_hz);
+  const Rational most_s =
+      Rational(kMostSeedsToTick) * Rational(axis.request.ticks_per_seed) / Rational(axis.request.fpga_hz);
   const Rational late_deg = (spin.up.duration_s - most_s) * speed;
   const bool waits = axis.request.start_deg && late_deg < Rational(360);
   const std::string key =

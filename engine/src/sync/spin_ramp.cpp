@@ -12,7 +12,7 @@
 namespace gravure::sync_plan {
 namespace {
 
-constexpr std::int64_t kMostSeeds = 4'294'967'295;  // of a segment: the board's schedule_seeds
+constexpr std::int64_t kMostSegmentSeeds = 4'294'967'295;  // of a segment: the board's schedule_seeds
 
 Integer counts_per_edge(const AbPlan& ab) {
   return Integer(1) << static_cast<unsigned>(ab.counter_bits - 2);
@@ -35,7 +35,7 @@ Integer whole(double value) {
 }
 
 void append(std::vector<SpinSegment>& segments, std::uint64_t increment, std::int64_t seeds, std::int64_t unit_seeds) {
-  const std::int64_t most = kMostSeeds / unit_seeds * unit_seeds;
+  const std::int64_t most = kMostSegmentSeeds / unit_seeds * unit_seeds;
   for (; seeds > 0; seeds -= std::min(seeds, most)) {
     segments.push_back({increment, std::min(seeds, most)});
   }

@@ -13,7 +13,7 @@ namespace {
 constexpr double kNextLevel = 0.8;  // of sigma, from Gaussian to Gaussian
 constexpr double kMostSlope = 0.2;  // of sigma along the path: slower than the filter's own window changes
 constexpr double kNarrower = 0.85;  // where the limits are broken still
-constexpr int kMostRounds = 40;
+constexpr int kMostNarrowings = 40;
 
 /// Sigma of every point, and Gaussians of some sigmas from which paths with any are blended.
 class Adaptation {
@@ -23,7 +23,7 @@ class Adaptation {
 
   Result<std::vector<Vector2>> run(const CancelToken& cancel) {
     std::vector<double> allowed_mm = sigma_mm_;
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMostNarrowings; ++round) {
       if (cancel.cancelled()) {
         return Error{ErrorCode::cancelled, "stopped while sigma was adapted"};
       }
@@ -37,7 +37,7 @@ class Adaptation {
     return Error{ErrorCode::out_of_range,
                  fmt::format("adaptive split: {} rounds of narrowing do not meet the limits near x = {} mm, y = {} mm: "
                              "widen them, or take a smoother surface or a finer path",
-                             kMostRounds, worst_mm_.x(), worst_mm_.y())};
+                             kMostNarrowings, worst_mm_.x(), worst_mm_.y())};
   }
 
  private:

@@ -6,14 +6,6 @@
 #include <cmath>
 
 namespace gravure::texture {
-namespace {
-
-bool within(const DeviationSummary& most, const DeviationLimits& limits) {
-  return violations(most, limits).empty();
-}
-
-}  // namespace
-
 PathTimingRequest TimedSplit::request(const PathMachine& machine, const TexturePath& path) const {
   PathTimingRequest request;
   request.targets = targets();
@@ -67,7 +59,7 @@ Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surfac
   double bad_mm = 0;
   const auto look = [&](double sigma_mm) -> Result<bool> {
     GRAVURE_TRY(Split split, split_path(splitter, surface, path, limits, sigma_mm, cancel));
-    if (!within(split.most, limits)) {
+    if (!violations(split.most, limits).empty()) {
       return false;
     }
     GRAVURE_TRY(TimedSplit timed, time_split(std::move(split), path, machine, cancel));

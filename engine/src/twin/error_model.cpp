@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <tuple>
 
 namespace gravure {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Interval operator+(const Interval& a, const Interval& b) noexcept {
   return {a.least + b.least, a.most + b.most};
@@ -111,9 +110,10 @@ Result<ErrorModel> ErrorModel::make(const Plan& plan, const scan::LineTrajectory
     }
     model.set_rounding_range();
   }
-  model.radius_um_ = to_double(plan.rotary.circumference_um) / (2 * kPi);
+  model.radius_um_ = to_double(plan.rotary.circumference_um) / (2 * std::numbers::pi);
   if (twin.run_out.enabled && plan.mode != Mode::flat) {
-    model.run_out_ = RunOut{to_double(twin.run_out.eccentricity_um), to_double(twin.run_out.angle_deg) * kPi / 180};
+    model.run_out_ =
+        RunOut{to_double(twin.run_out.eccentricity_um), to_double(twin.run_out.angle_deg) * std::numbers::pi / 180};
   }
   if (twin.thermal.enabled) {
     model.growth_ = to_double(Rational(twin.thermal.temperature_change_k * twin.thermal.expansion_um_per_m_k)) * 1e-6;
@@ -153,7 +153,7 @@ ShiftedSurface ErrorModel::surface_at(std::int64_t line) const {
   ShiftedSurface surface{radius_um_, growth_ * radius_um_, 0, 0};
   if (run_out_) {
     const double from_high_spot =
-        2 * kPi * static_cast<double>(line) / static_cast<double>(plan_.rotary.lines_per_revolution) -
+        2 * std::numbers::pi * static_cast<double>(line) / static_cast<double>(plan_.rotary.lines_per_revolution) -
         run_out_->angle_rad;
     surface.outwards_um = run_out_->eccentricity_um * std::cos(from_high_spot);
     surface.onwards_um = -run_out_->eccentricity_um * std::sin(from_high_spot);

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gravure/core/as_size.hpp"
 #include "gravure/raster/copy_bits.hpp"
 #include "gravure/raster/place.hpp"
 
 namespace gravure {
 namespace {
-
-std::size_t size(std::int64_t bytes) {
-  return static_cast<std::size_t>(bytes);
-}
 
 /// The columns of a stretch that belong to the part.
 Stretch cut(Stretch stretch, const ImagePart& part) {
@@ -53,9 +50,9 @@ Result<void> gather(LineSource& program, ChunkRun& runner, const Showing& showin
         const Stretch stretch = cut(map.stretch(revolution, line, showing.stretch), part);
         if (stretch.columns > 0) {
           const std::int64_t at = map.image_line(revolution, line) - part.first_line;
-          raster::copy_bits(out.subspan(size(at * part_bytes), size(part_bytes)),
+          raster::copy_bits(out.subspan(as_size(at * part_bytes), as_size(part_bytes)),
                             stretch.first_column - part.first_column,
-                            landed.subspan(size((line - runner.first_line()) * line_bytes), size(line_bytes)),
+                            landed.subspan(as_size((line - runner.first_line()) * line_bytes), as_size(line_bytes)),
                             stretch.first_pixel, stretch.columns);
         }
       }

@@ -9,8 +9,8 @@ namespace gravure {
 namespace {
 
 constexpr int kPlaces = 10;
-constexpr double kRounding = 1e-6;  // of a limit
-constexpr double kStill = 1e-8;     // mm, degrees: what a cubic swings out where an axis comes to rest
+constexpr double kLimitRounding = 1e-6;  // of a limit
+constexpr double kStill = 1e-8;          // mm, degrees: what a cubic swings out where an axis comes to rest
 
 bool turns(std::size_t axis) {
   return kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
@@ -66,7 +66,7 @@ std::vector<std::string> PathLimits::violations() const {
     };
     const auto hold = [&](const char* what, double value, const std::optional<Rational>& limit, double rounding,
                           const char* per, Kind kind) {
-      if (!limit || value <= to_double(*limit) + std::abs(to_double(*limit)) * kRounding + rounding) {
+      if (!limit || value <= to_double(*limit) + std::abs(to_double(*limit)) * kLimitRounding + rounding) {
         return;
       }
       const double when = extremes_[axis][kind].when;

@@ -5,7 +5,7 @@
 namespace gravure {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;
+constexpr std::int64_t kTargets = 4096;
 
 kinematics::Vector3 vector_of(const std::array<double, 3>& parts) {
   return {parts[0], parts[1], parts[2]};
@@ -24,14 +24,14 @@ Result<PathTarget> TargetWalk::point(std::int64_t index) {
   }
   if (block_.empty() || index < block_first_ || index >= block_first_ + static_cast<std::int64_t>(block_.size())) {
     block_first_ = index;
-    block_.resize(static_cast<std::size_t>(std::min(kBlock, total_ - index)));
+    block_.resize(static_cast<std::size_t>(std::min(kTargets, total_ - index)));
     GRAVURE_CHECK(program_.read_targets(block_first_, block_));
   }
   return block_[static_cast<std::size_t>(index - block_first_)];
 }
 
 Result<std::optional<WantedPoint>> TargetWalk::at(double along_mm) {
-  constexpr double kRounding = 1e-6;  // mm of path
+  constexpr double kRounding_mm = 1e-6;  // mm of path
   while (at_ + 2 < total_) {
     GRAVURE_TRY(const PathTarget next, point(at_ + 1));
     if (next.along_mm >= along_mm) {
@@ -44,7 +44,7 @@ Result<std::optional<WantedPoint>> TargetWalk::at(double along_mm) {
   }
   GRAVURE_TRY(const PathTarget begin, point(at_));
   GRAVURE_TRY(const PathTarget end, point(at_ + 1));
-  if (along_mm < begin.along_mm - kRounding || along_mm > end.along_mm + kRounding) {
+  if (along_mm < begin.along_mm - kRounding_mm || along_mm > end.along_mm + kRounding_mm) {
     return std::optional<WantedPoint>();
   }
   const double length = end.along_mm - begin.along_mm;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gravure/core/units.hpp"
 #include "gravure/scan/landing.hpp"
 
 namespace gravure {
@@ -14,8 +15,6 @@ using scan::Direction;
 using scan::LandingError;
 using scan::LandingModel;
 using scan::LineTrajectory;
-
-constexpr double kUmPerMm = 1000;
 
 /// A scanner that does what it is told, at once or as early as it is told.
 LandingModel ideal_model(const LineTrajectory& trajectory) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace gravure {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// So near to critical damping the two roots are one to rounding: taken this far above, which moves nothing by more
 /// than its share of an edge.
 constexpr double kNearCritical = 1e-4;
@@ -22,7 +22,7 @@ double variation_of(double damping) {
   if (damping >= 1) {
     return 1;
   }
-  const double overshoot = std::exp(-kPi * damping / std::sqrt(1 - damping * damping));
+  const double overshoot = std::exp(-std::numbers::pi * damping / std::sqrt(1 - damping * damping));
   return (1 + overshoot) / (1 - overshoot);
 }
 
@@ -30,7 +30,7 @@ double variation_of(double damping) {
 
 Servo::Servo(double bandwidth_hz, double damping, double period_s)
     : period_s_(period_s), step_variation_(variation_of(damping)) {
-  const double omega = 2 * kPi * bandwidth_hz;
+  const double omega = 2 * std::numbers::pi * bandwidth_hz;
   ramp_lag_edges_ = 2 * damping / omega / period_s;
   const double zeta = std::abs(damping - 1) < kNearCritical ? 1 + kNearCritical : damping;
   const Complex apart = std::sqrt(Complex(zeta * zeta - 1));

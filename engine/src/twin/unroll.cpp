@@ -8,16 +8,14 @@
 
 #include "chunk_run.hpp"
 #include "gather.hpp"
+#include "gravure/core/as_size.hpp"
 #include "gravure/core/exposure_map.hpp"
+#include "gravure/core/units.hpp"
 #include "gravure/raster/place.hpp"
 #include "gravure/raster/transpose.hpp"
 
 namespace gravure {
 namespace {
-
-std::size_t size(std::int64_t bytes) {
-  return static_cast<std::size_t>(bytes);
-}
 
 bool columns_are_lines(const ProgramHeader& header) {
   return header.lines_along == LinesAlong::columns;
@@ -28,7 +26,7 @@ void invert(std::span<std::byte> rows, std::int64_t width) {
   const std::int64_t bytes = raster::packed_bytes(width);
   std::for_each(rows.begin(), rows.end(), [](std::byte& byte) { byte = ~byte; });
   const auto used = static_cast<std::byte>(0xFFU << static_cast<unsigned>(8 * bytes - width));
-  for (std::size_t last = size(bytes) - 1; last < rows.size(); last += size(bytes)) {
+  for (std::size_t last = as_size(bytes) - 1; last < rows.size(); last += as_size(bytes)) {
     rows[last] &= used;
   }
 }
@@ -44,8 +42,6 @@ Result<void> unroll_lines(LineSource& program, const DeviceFactory& devices, std
   }
   return {};
 }
-
-constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 
 /// What unrolling takes beside the part of the picture: a chunk as stored, unpacked, turned, fired and landed, library
 /// and codec.
@@ -74,10 +70,10 @@ Result<void> gather_lines(LineSource& program, ChunkRun& runner, const Showing& 
   const std::int64_t bytes = raster::packed_bytes(columns);
   GRAVURE_TRY(const std::int64_t fit, fitting(program, options, bytes, all));
   const std::int64_t block = std::min(fit, std::max<std::int64_t>(1, program.lines_per_chunk()));
-  std::vector<std::byte> lines(size(block * bytes));
+  std::vector<std::byte> lines(as_size(block * bytes));
   for (std::int64_t first = 0; first < all; first += block) {
     const std::int64_t count = std::min(block, all - first);
-    const std::span<std::byte> out = std::span(lines).first(size(count * bytes));
+    const std::span<std::byte> out = std::span(lines).first(as_size(count * bytes));
     GRAVURE_CHECK(gather(program, runner, showing, {first, first + count, 0, columns}, out));
     if (header.fires == Fires::black) {
       invert(out, columns);
@@ -98,9 +94,9 @@ Result<void> gather_columns(LineSource& program, ChunkRun& runner, const Showing
               fitting(program, options, 2 * (lines + 7), raster::packed_bytes(columns)));  // eight rows a byte
   for (std::int64_t first = 0; first < columns; first += 8 * fit) {
     const std::int64_t count = std::min(8 * fit, columns - first);
-    std::vector<std::byte> strip(size(lines * raster::packed_bytes(count)));
+    std::vector<std::byte> strip(as_size(lines * raster::packed_bytes(count)));
     GRAVURE_CHECK(gather(program, runner, showing, {0, lines, first, first + count}, strip));
-    std::vector<std::byte> turned(size(count * raster::packed_bytes(lines)));
+    std::vector<std::byte> turned(as_size(count * raster::packed_bytes(lines)));
     raster::transpose(turned, strip, lines, count);
     if (header.fires == Fires::black) {
       invert(turned, lines);

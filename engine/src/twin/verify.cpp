@@ -9,7 +9,9 @@
 #include <thread>
 
 #include "axis_check.hpp"
+#include "gravure/core/as_size.hpp"
 #include "gravure/core/spin_phase.hpp"
+#include "gravure/core/units.hpp"
 #include "gravure/raster/count.hpp"
 #include "judge.hpp"
 #include "judge_budget.hpp"
@@ -19,10 +21,6 @@ namespace gravure {
 namespace {
 
 constexpr std::int64_t kReportBytes = 256;  // of each revolution: its row of the seam table
-
-std::size_t size(std::int64_t bytes) {
-  return static_cast<std::size_t>(bytes);
-}
 
 /// The layers cut from one source image, and the revolutions that expose each.
 struct Group {
@@ -96,7 +94,6 @@ class Verifier {
     const std::int64_t all = options_.memory_bytes - kReportBytes * plan_.job.revolutions;
     const std::int64_t each = worker_bytes() + image_bytes;
     if (all < each) {
-      constexpr std::int64_t kMiB = std::int64_t{1} << 20;
       return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options_.memory_bytes / kMiB) +
                                                 " MiB: verifying this program needs at least " +
                                                 std::to_string((options_.memory_bytes - all + each + kMiB - 1) / kMiB) +
@@ -182,12 +179,12 @@ class Verifier::Worker final : public PinObserver {
 
   Result<void> run_task(const Group& group, std::int64_t chunk) {
     for (const std::int64_t layer : group.layers) {
-      if (parent_.revolutions_of_[size(layer)].empty()) {
+      if (parent_.revolutions_of_[as_size(layer)].empty()) {
         continue;
       }
       GRAVURE_CHECK(chunk_.load(*program_, {layer, chunk}));
       load_image(layer, chunk);
-      for (const std::int64_t revolution : parent_.revolutions_of_[size(layer)]) {
+      for (const std::int64_t revolution : parent_.revolutions_of_[as_size(layer)]) {
         if (parent_.options_.cancel != nullptr && parent_.options_.cancel->cancelled()) {
           return Error{ErrorCode::cancelled, "stopped before everything was verified"};
         }
@@ -207,10 +204,10 @@ class Verifier::Worker final : public PinObserver {
     if (!images_) {
       return;
     }
-    image_.resize(size(chunk_.lines() * header_.line_bytes()));
+    image_.resize(as_size(chunk_.lines() * header_.line_bytes()));
     const Result<bool> invert = images_->read_lines(layer, chunk_.first_line(), chunk_.lines(), image_);
     if (!invert) {
-      const auto revolutions = static_cast<std::int64_t>(parent_.revolutions_of_[size(layer)].size());
+      const auto revolutions = static_cast<std::int64_t>(parent_.revolutions_of_[as_size(layer)].size());
       tally_.unread[layer].add(chunk, revolutions * chunk_.lines(), invert.error().message);
       return;
     }
@@ -314,15 +311,15 @@ class Verifier::Worker final : public PinObserver {
     const unsigned unused = static_cast<unsigned>(bytes * 8 - plan_.line.pixels);
     const auto mask = static_cast<std::byte>(0xFFU << unused);
     for (std::int64_t i = 0; i < chunk_.lines(); ++i) {
-      const std::span<std::byte> image = std::span(image_).subspan(size(i * bytes), size(bytes));
+      const std::span<std::byte> image = std::span(image_).subspan(as_size(i * bytes), as_size(bytes));
       image.back() &= mask;
       if (i >= landing_.lines()) {  // never came
         tally_.wrong_pixels += plan_.line.pixels;
         tally_.see_wrong(first_ordinal_ + i, 0);
         continue;
       }
-      const std::span<const std::byte> line = landed.subspan(size(i * bytes), size(bytes));
-      if (std::memcmp(line.data(), image.data(), size(bytes)) != 0) {
+      const std::span<const std::byte> line = landed.subspan(as_size(i * bytes), as_size(bytes));
+      if (std::memcmp(line.data(), image.data(), as_size(bytes)) != 0) {
         tally_.wrong_pixels += raster::count_differences(line, image);
         tally_.see_wrong(first_ordinal_ + i, raster::first_difference(line, image));
       }
@@ -362,7 +359,7 @@ void Verifier::work_on_tickets(const std::function<Result<std::unique_ptr<LineSo
   Worker worker(*this, std::move(program).value(), std::move(reader));
   const std::int64_t tasks = static_cast<std::int64_t>(groups_.size()) * chunks_;
   for (std::int64_t ticket = next_.fetch_add(1); ticket < tasks && !stop_; ticket = next_.fetch_add(1)) {
-    if (Result<void> ran = worker.run_task(groups_[size(ticket / chunks_)], ticket % chunks_); !ran) {
+    if (Result<void> ran = worker.run_task(groups_[as_size(ticket / chunks_)], ticket % chunks_); !ran) {
       return fail(ran.error());
     }
   }
@@ -372,7 +369,7 @@ void Verifier::work_on_tickets(const std::function<Result<std::unique_ptr<LineSo
 
 /// What the workers take for granted; a reader of files has checked it, another source may not have.
 Result<void> check_header(const ProgramHeader& header) {
-  const bool fits = header.layer_of_revolution.size() == size(header.plan.job.revolutions) &&
+  const bool fits = header.layer_of_revolution.size() == as_size(header.plan.job.revolutions) &&
                     std::all_of(header.layer_of_revolution.begin(), header.layer_of_revolution.end(),
                                 [&](std::uint32_t layer) { return layer < header.layers.size(); });
   if (!fits || header.plan.rotary.lines_per_revolution < 1 || header.plan.line.pixels < 1) {

@@ -10,6 +10,7 @@
 
 #include "chunk_run.hpp"
 #include "gravure/core/path_expand.hpp"
+#include "gravure/core/units.hpp"
 #include "gravure/kinematics/machines.hpp"
 #include "path_limits.hpp"
 #include "path_targets.hpp"
@@ -17,7 +18,6 @@
 namespace gravure {
 namespace {
 
-constexpr double kUmPerMm = 1000;
 constexpr double kDegPerRad = 180 / std::numbers::pi;
 
 /// Keeps the largest and the mean square.
@@ -133,8 +133,8 @@ class PathJudge {
     // Half a slot of way, on whichever side there is more; the one beyond the period is like the one within.
     const double way = std::max(covered.at(std::min(1.0, share + half)) - covered.at(share),
                                 covered.at(share) - covered.at(std::max(0.0, share - half)));
-    constexpr double kRounding = 2;  // counts
-    const bool in_place = std::abs(along - belongs) <= way * 1.01 + kRounding;
+    constexpr double kRounding_counts = 2;  // counts
+    const bool in_place = std::abs(along - belongs) <= way * 1.01 + kRounding_counts;
     if (!in_place || pulse <= last_ || pulse >= path_.pulses) {
       ++report_.misplaced;
       note_first(first_misplaced_, line, slot);

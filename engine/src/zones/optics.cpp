@@ -6,17 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "check_positive.hpp"
+#include "gravure/core/units.hpp"
+
 namespace gravure::zones {
 namespace {
-
-constexpr double kUmPerMm = 1000;
-
-Result<void> check_positive(const char* name, double value) {
-  if (!(value > 0) || !std::isfinite(value)) {
-    return Error{ErrorCode::out_of_range, fmt::format("{} = {}: must be greater than 0", name, value)};
-  }
-  return {};
-}
 
 /// Squares of both radii over the square at normal incidence, by ln(over threshold) and cos(incidence).
 double short_share(double log_over, double cosine) noexcept {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "check_positive.hpp"
 #include "gravure/motion/synchronise.hpp"
 
 namespace gravure::zones {
@@ -38,13 +39,6 @@ struct Leg {
 
 motion::JerkRequest request_of(double stroke, const Limits& limits) {
   return {{stroke, limits.speed, limits.acceleration, limits.acceleration, 0, 0}, limits.jerk, limits.jerk};
-}
-
-Result<void> check_positive(const char* name, double value) {
-  if (!(value > 0) || !std::isfinite(value)) {
-    return Error{ErrorCode::out_of_range, fmt::format("{} = {}: must be greater than 0", name, value)};
-  }
-  return {};
 }
 
 /// Corners that a stroke turns at, its ends included.

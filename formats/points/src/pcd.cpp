@@ -45,9 +45,9 @@ std::optional<ScalarType> scalar_type(const Field& field) {
   return kind == std::string_view::npos || power == 4 ? std::nullopt : kTypes[3 * power + kind];
 }
 
-class HeaderReader {
+class PcdHeaderReader {
  public:
-  HeaderReader(std::string_view bytes, const std::string& name) : rest_(bytes), size_(bytes.size()), name_(name) {}
+  PcdHeaderReader(std::string_view bytes, const std::string& name) : rest_(bytes), size_(bytes.size()), name_(name) {}
 
   Result<PcdHeader> read() {
     rest_ = without_byte_order_mark(rest_);
@@ -261,7 +261,7 @@ PointFile read_binary(const PcdHeader& header, const Columns& columns, std::stri
 }  // namespace
 
 Result<PointFile> parse_pcd(std::string_view bytes, const std::string& name) {
-  GRAVURE_TRY(const PcdHeader header, HeaderReader(bytes, name).read());
+  GRAVURE_TRY(const PcdHeader header, PcdHeaderReader(bytes, name).read());
   const Columns columns = columns_of(header);
   if (!columns.points()) {
     return Error{ErrorCode::bad_file, name + ": FIELDS must have x, y and z"};

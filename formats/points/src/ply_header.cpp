@@ -30,9 +30,9 @@ bool is_integer(ScalarType type) noexcept {
   return type != ScalarType::f32 && type != ScalarType::f64;
 }
 
-class HeaderReader {
+class PlyHeaderReader {
  public:
-  HeaderReader(std::string_view bytes, const std::string& name) : rest_(bytes), size_(bytes.size()), name_(name) {}
+  PlyHeaderReader(std::string_view bytes, const std::string& name) : rest_(bytes), size_(bytes.size()), name_(name) {}
 
   Result<PlyHeader> read() {
     if (without_byte_order_mark(take()) != "ply") {
@@ -154,7 +154,7 @@ class HeaderReader {
 }  // namespace
 
 Result<PlyHeader> parse_ply_header(std::string_view bytes, const std::string& name) {
-  return HeaderReader(bytes, name).read();
+  return PlyHeaderReader(bytes, name).read();
 }
 
 }  // namespace gravure

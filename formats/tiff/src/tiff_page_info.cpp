@@ -7,8 +7,6 @@
 namespace gravure {
 namespace {
 
-constexpr std::int64_t kMaxHeight = std::numeric_limits<std::int32_t>::max();
-
 template <class T>
 std::optional<T> field(const TiffHandle& handle, std::uint32_t tag) {
   T value{};
@@ -35,7 +33,7 @@ Result<void> read_size(const TiffHandle& handle, const std::string& place, TiffP
   info.bits_per_sample = field_or_default<std::uint16_t>(handle, TIFFTAG_BITSPERSAMPLE);
   info.samples_per_pixel = field_or_default<std::uint16_t>(handle, TIFFTAG_SAMPLESPERPIXEL);
   const std::string size = std::to_string(info.width) + " x " + std::to_string(info.height) + " pixels";
-  if (info.width < 1 || info.height < 1 || info.height > kMaxHeight) {
+  if (info.width < 1 || info.height < 1 || info.height > kMaxTiffHeight) {
     return refused(place, "is " + size + ": both must be 1 or more and the height at most 2147483647");
   }
   if (info.bits_per_sample < 1 || info.bits_per_sample > 64 || info.samples_per_pixel < 1) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "gravure/core/error.hpp"
@@ -9,6 +10,8 @@
 #include "tiff_page_offsets.hpp"
 
 namespace gravure {
+
+inline constexpr std::int64_t kMaxTiffHeight = std::numeric_limits<std::int32_t>::max();
 
 /// "path: page 3: "
 std::string tiff_place(const std::string& path, std::int64_t page);

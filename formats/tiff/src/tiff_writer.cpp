@@ -11,6 +11,7 @@
 #include "gravure/core/image_source.hpp"
 #include "gravure/formats/tiff.hpp"
 #include "tiff_handle.hpp"
+#include "tiff_page_info.hpp"
 
 namespace gravure {
 namespace {
@@ -37,12 +38,12 @@ std::uint16_t libtiff_code(TiffCompression compression) {
 }
 
 Result<void> check_page(const std::string& path, const BilevelTiffPage& page) {
-  constexpr std::int64_t kMaxHeight = std::numeric_limits<std::int32_t>::max();
   const std::int64_t most = kMaxTiffRowBytes * 8 / page.bits;
-  if (page.width < 1 || page.width > most || page.height < 1 || page.height > kMaxHeight) {
+  if (page.width < 1 || page.width > most || page.height < 1 || page.height > kMaxTiffHeight) {
     return Error{ErrorCode::out_of_range, path + ": a page of " + std::to_string(page.width) + " x " +
                                               std::to_string(page.height) + " pixels: the width must be 1 to " +
-                                              std::to_string(most) + ", the height 1 to " + std::to_string(kMaxHeight)};
+                                              std::to_string(most) + ", the height 1 to " +
+                                              std::to_string(kMaxTiffHeight)};
   }
   for (const auto& dots : {page.x_dots_per_mm, page.y_dots_per_mm}) {
     if (page.x_dots_per_mm.has_value() != page.y_dots_per_mm.has_value() ||

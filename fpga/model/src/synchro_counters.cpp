@@ -1,17 +1,10 @@
 #include "gravure/fpga/synchro_events.hpp"
 
+#include "control_bits.hpp"
+
 // What SynchroEvents knows of the counters inside the blocks: for how many seed clocks each does nothing but count, and
 // where it stands after some of them. All inputs stand still meanwhile.
 namespace gravure::fpga {
-namespace {
-
-/// Bits of the control register.
-constexpr std::uint32_t kRun = 1;
-constexpr std::uint32_t kWatch = 4;
-constexpr std::uint32_t kTimed = 16;
-constexpr std::uint32_t kReference = 64;
-
-}  // namespace
 
 std::uint64_t SynchroEvents::slots_still_for() const noexcept {
   const std::uint32_t control = board_.now_.settings.control;

@@ -11,7 +11,7 @@
 namespace gravure::emulator {
 namespace {
 
-constexpr std::array<std::uint32_t, 2> kLoad{protocol::kCommandLoad0, protocol::kCommandLoad1};
+constexpr std::array<std::uint32_t, 2> kLoadCommands{protocol::kCommandLoad0, protocol::kCommandLoad1};
 constexpr std::array<std::uint32_t, 2> kIncrement{4, 32};
 constexpr std::array<std::uint32_t, 2> kAppend{protocol::kCommandAppend0, protocol::kCommandAppend1};
 
@@ -59,7 +59,7 @@ void BoardMachine::obey(std::uint16_t command) {
     if ((command & protocol::kCommandStopSchedules) != 0) {
       axes_[axis].empty();
     }
-    if ((command & kLoad[axis]) != 0) {
+    if ((command & kLoadCommands[axis]) != 0) {
       load_axis(axis);
     }
     if ((command & kIncrement[axis]) != 0) {

@@ -18,20 +18,16 @@ constexpr std::uint64_t kFrameOverhead = fpga::FrameParser::kFrameBytes;
 /// Seed clocks from `go` to tick 0 of the first line: room for two frames and more.
 constexpr std::uint64_t kLead = 64;
 
-Error refusal(const std::string& what) {
-  return {ErrorCode::device, "the board refuses " + what};
-}
-
 /// What every board refuses, and what this one does: its clocks and counters.
 Result<void> check_board(const DeviceSetup& setup) {
   if (setup.clock_multiplier != AbGenerator::kClockMultiplier) {
     const std::string own = std::to_string(AbGenerator::kClockMultiplier);
-    return refusal("clock_multiplier = " + std::to_string(setup.clock_multiplier) + ": it has " + own +
-                   " FPGA clocks a seed clock; set fpga.clock_multiplier = " + own);
+    return board_refuses("clock_multiplier = " + std::to_string(setup.clock_multiplier) + ": it has " + own +
+                         " FPGA clocks a seed clock; set fpga.clock_multiplier = " + own);
   }
   if (setup.counter_bits != fpga::Synchro::kAxisWidths.bits) {
-    return refusal("counter_bits = " + std::to_string(setup.counter_bits) + ": its counters have " +
-                   std::to_string(fpga::Synchro::kAxisWidths.bits));
+    return board_refuses("counter_bits = " + std::to_string(setup.counter_bits) + ": its counters have " +
+                         std::to_string(fpga::Synchro::kAxisWidths.bits));
   }
   return check_setup(setup);
 }
@@ -42,15 +38,16 @@ Result<void> check_backward_delay(std::int64_t later_ticks, std::int64_t clock_m
   if (later_ticks % clock_multiplier == 0) {
     return {};
   }
-  return refusal("a bidirectional offset that leaves " + std::to_string(later_ticks) +
-                 " ticks beside whole slots: it delays by whole seed clocks of " + std::to_string(clock_multiplier) +
-                 " ticks; make scanner.bidirectional_offset_ticks a multiple of " + std::to_string(clock_multiplier));
+  return board_refuses(
+      "a bidirectional offset that leaves " + std::to_string(later_ticks) +
+      " ticks beside whole slots: it delays by whole seed clocks of " + std::to_string(clock_multiplier) +
+      " ticks; make scanner.bidirectional_offset_ticks a multiple of " + std::to_string(clock_multiplier));
 }
 
 Result<void> BoardHost::write(const fpga::Register& target, std::uint64_t value) {
   if (value > fpga::largest(target)) {
-    return refusal(std::string(target.name) + " = " + std::to_string(value) + ": allowed is 0 to " +
-                   std::to_string(fpga::largest(target)));
+    return board_refuses(std::string(target.name) + " = " + std::to_string(value) + ": allowed is 0 to " +
+                         std::to_string(fpga::largest(target)));
   }
   for (int word = 0; word < (target.bits > 32 ? 2 : 1); ++word) {
     fpga::Synchro::Inputs in;
@@ -115,12 +112,13 @@ Result<void> BoardHost::start_lines(const DeviceSetup& setup, const Lines& lines
   const auto seeds_per_slot = static_cast<std::uint64_t>(setup.ticks_per_slot) / kSeedClock;
   line_seeds_ = static_cast<std::uint64_t>(setup.slots_per_line) * seeds_per_slot;
   if (2 * bytes > std::uint64_t{1} << static_cast<unsigned>(fifo_bits_)) {
-    return refusal("window_slots = " + std::to_string(setup.window_slots) + ": two lines must fit into its FIFO of " +
-                   std::to_string(std::uint64_t{1} << static_cast<unsigned>(fifo_bits_)) + " bytes");
+    return board_refuses("window_slots = " + std::to_string(setup.window_slots) +
+                         ": two lines must fit into its FIFO of " +
+                         std::to_string(std::uint64_t{1} << static_cast<unsigned>(fifo_bits_)) + " bytes");
   }
   if (bytes + kFrameOverhead + kLead > line_seeds_) {
-    return refusal("lines of " + std::to_string(line_seeds_) + " seed clocks: a frame of " +
-                   std::to_string(bytes + kFrameOverhead) + " bytes takes longer");
+    return board_refuses("lines of " + std::to_string(line_seeds_) + " seed clocks: a frame of " +
+                         std::to_string(bytes + kFrameOverhead) + " bytes takes longer");
   }
   GRAVURE_CHECK(start_axis(setup));
   GRAVURE_CHECK(write(fpga::kSeedsPerSlotRegister, seeds_per_slot));
@@ -175,7 +173,7 @@ Result<void> BoardHost::send(const LineFrame& frame) {
     return put(frame);
   }
   if (frame.first_slot == 0) {
-    return refusal("a backward line in slot 0 that should begin earlier by part of a slot");
+    return board_refuses("a backward line in slot 0 that should begin earlier by part of a slot");
   }
   LineFrame earlier = frame;
   --earlier.first_slot;

@@ -135,6 +135,10 @@ void check_job(const DeviceSetup& setup, Refusals& refusals) {
 
 }  // namespace
 
+Error board_refuses(const std::string& what) {
+  return {ErrorCode::device, "the board refuses " + what};
+}
+
 fpga::AbRegisters ab_registers_of(const DeviceSetup& setup) noexcept {
   return {.bits = setup.counter_bits,
           .prescaler = setup.prescaler,

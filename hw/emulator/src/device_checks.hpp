@@ -1,10 +1,15 @@
 #pragma once
 
+#include <string>
+
 #include "gravure/core/error.hpp"
 #include "gravure/core/line_device.hpp"
 #include "gravure/fpga/ab_registers.hpp"
 
 namespace gravure::emulator {
+
+/// device: "the board refuses " and what.
+Error board_refuses(const std::string& what);
 
 /// The A-B registers of a setup. Its counter_bits must be in range.
 fpga::AbRegisters ab_registers_of(const DeviceSetup& setup) noexcept;

@@ -1,13 +1,10 @@
 #include "gravure/emulator/schedule.hpp"
 
+#include "device_checks.hpp"
 #include "gravure/fpga/register_map.hpp"
 
 namespace gravure::emulator {
 namespace {
-
-Error refusal(const std::string& what) {
-  return {ErrorCode::device, "the board refuses " + what};
-}
 
 std::uint64_t ticks_of(const ScheduleSegment& segment, std::int64_t ticks_per_seed) {
   return segment.seeds * static_cast<std::uint64_t>(ticks_per_seed);
@@ -31,22 +28,22 @@ Result<void> check_schedule(const std::string& field, const std::vector<Schedule
     return {};
   }
   if (segments.size() > kScheduleSegments) {
-    return refusal(field + " of " + std::to_string(segments.size()) + " segments: its list holds " +
-                   std::to_string(kScheduleSegments));
+    return board_refuses(field + " of " + std::to_string(segments.size()) + " segments: its list holds " +
+                         std::to_string(kScheduleSegments));
   }
   for (const ScheduleSegment& segment : segments) {
     if (segment.increment > fpga::max_increment(registers)) {
-      return refusal(field + " increment = " + std::to_string(segment.increment) + ": allowed is 0 to " +
-                     std::to_string(fpga::max_increment(registers)));
+      return board_refuses(field + " increment = " + std::to_string(segment.increment) + ": allowed is 0 to " +
+                           std::to_string(fpga::max_increment(registers)));
     }
     if (segment.seeds < 1 || segment.seeds > fpga::largest(fpga::kScheduleSeedsRegister)) {
-      return refusal(field + " seeds = " + std::to_string(segment.seeds) + ": allowed is 1 to " +
-                     std::to_string(fpga::largest(fpga::kScheduleSeedsRegister)));
+      return board_refuses(field + " seeds = " + std::to_string(segment.seeds) + ": allowed is 1 to " +
+                           std::to_string(fpga::largest(fpga::kScheduleSeedsRegister)));
     }
     const bool stands = segment.increment == 0 && registers.fraction_num == 0;
     if (!stands && ticks_of(segment, ticks_per_seed) % registers.prescaler != 0) {
-      return refusal(field + " seeds = " + std::to_string(segment.seeds) + ": must be whole steps of the prescaler, " +
-                     std::to_string(registers.prescaler) + " ticks");
+      return board_refuses(field + " seeds = " + std::to_string(segment.seeds) +
+                           ": must be whole steps of the prescaler, " + std::to_string(registers.prescaler) + " ticks");
     }
   }
   return {};
@@ -58,8 +55,8 @@ Result<void> check_lead(const std::string& field, const std::vector<ScheduleSegm
     seeds += segment.seeds;
   }
   if (seeds > fpga::largest(fpga::kFirstTickRegister)) {
-    return refusal(field + " of " + std::to_string(seeds) + " seed clocks: first_tick counts to " +
-                   std::to_string(fpga::largest(fpga::kFirstTickRegister)));
+    return board_refuses(field + " of " + std::to_string(seeds) + " seed clocks: first_tick counts to " +
+                         std::to_string(fpga::largest(fpga::kFirstTickRegister)));
   }
   return {};
 }

@@ -11,41 +11,41 @@ namespace {
 
 enum class Place : std::uint8_t { slot, frame, byte };
 
-struct Kind {
+struct WireKind {
   std::string_view name;
   Place place;
 };
 
 /// By WireFaultKind.
-constexpr std::array<Kind, 16> kKinds = {{{"underrun", Place::slot},
-                                          {"silence", Place::slot},
-                                          {"interlock", Place::slot},
-                                          {"power", Place::slot},
-                                          {"checksum", Place::frame},
-                                          {"lost", Place::frame},
-                                          {"duplicate", Place::frame},
-                                          {"shape", Place::frame},
-                                          {"corrupt", Place::byte},
-                                          {"full", Place::byte},
-                                          {"stall", Place::byte},
-                                          {"timeout", Place::byte},
-                                          {"disconnect", Place::byte},
-                                          {"short", Place::byte},
-                                          {"delay", Place::byte},
-                                          {"reorder", Place::byte}}};
+constexpr std::array<WireKind, 16> kWireKinds = {{{"underrun", Place::slot},
+                                                  {"silence", Place::slot},
+                                                  {"interlock", Place::slot},
+                                                  {"power", Place::slot},
+                                                  {"checksum", Place::frame},
+                                                  {"lost", Place::frame},
+                                                  {"duplicate", Place::frame},
+                                                  {"shape", Place::frame},
+                                                  {"corrupt", Place::byte},
+                                                  {"full", Place::byte},
+                                                  {"stall", Place::byte},
+                                                  {"timeout", Place::byte},
+                                                  {"disconnect", Place::byte},
+                                                  {"short", Place::byte},
+                                                  {"delay", Place::byte},
+                                                  {"reorder", Place::byte}}};
 
-const Kind& about(WireFaultKind kind) {
-  return kKinds[static_cast<std::size_t>(kind)];
+const WireKind& about(WireFaultKind kind) {
+  return kWireKinds[static_cast<std::size_t>(kind)];
 }
 
-std::string form(const Kind& kind) {
+std::string form(const WireKind& kind) {
   constexpr std::array<std::string_view, 3> places{"@line=N+SLOT", "@line=N", "@byte=N"};
   return std::string(kind.name).append(places[static_cast<std::size_t>(kind.place)]);
 }
 
 Error refusal(std::string_view text) {
   std::string forms;
-  for (const Kind& kind : kKinds) {
+  for (const WireKind& kind : kWireKinds) {
     forms += (forms.empty() ? "" : ", ") + form(kind);
   }
   return {ErrorCode::bad_argument,
@@ -79,12 +79,12 @@ std::string to_string(const WireFault& fault) {
 
 Result<WireFault> parse_wire_fault(std::string_view text) {
   const std::size_t at = text.find('@');
-  const auto* const kind =
-      std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& known) { return known.name == text.substr(0, at); });
-  if (at == std::string_view::npos || kind == kKinds.end()) {
+  const auto* const kind = std::find_if(kWireKinds.begin(), kWireKinds.end(),
+                                        [&](const WireKind& known) { return known.name == text.substr(0, at); });
+  if (at == std::string_view::npos || kind == kWireKinds.end()) {
     return refusal(text);
   }
-  WireFault fault{.kind = static_cast<WireFaultKind>(kind - kKinds.begin())};
+  WireFault fault{.kind = static_cast<WireFaultKind>(kind - kWireKinds.begin())};
   if (!parse_place(text.substr(at + 1), kind->place, fault)) {
     return refusal(text);
   }

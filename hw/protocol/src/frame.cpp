@@ -10,13 +10,13 @@
 namespace gravure::protocol {
 namespace {
 
-constexpr std::uint32_t kMark = 0xA5;
+constexpr std::uint32_t kFrameMark = 0xA5;
 constexpr std::uint32_t kLineKind = 0x0156'5247;  // "GRV", then 1
 constexpr std::size_t kCheckBytes = 4;
 constexpr std::size_t kBeforeBits = kFrameBytes - kCheckBytes;
 constexpr std::size_t kKindEnd = 5;  ///< bytes until mark, name and kind are through
 
-std::uint32_t checksum(std::span<const std::byte> from_mark_to_bits) {
+std::uint32_t frame_checksum(std::span<const std::byte> from_mark_to_bits) {
   return ~crc32c_continue(kCrc32cStart, from_mark_to_bits.subspan(1));
 }
 
@@ -28,7 +28,7 @@ Error not_a_frame(const std::string& what) {
 bool begins_right(std::span<const std::byte> stream) {
   std::array<std::byte, kKindEnd> front{};
   ByteWriter out(front);
-  out.put(kMark, 1);
+  out.put(kFrameMark, 1);
   out.put(kLineKind, 4);
   const std::size_t there = std::min(stream.size(), front.size());
   return std::equal(front.begin(), front.begin() + static_cast<std::ptrdiff_t>(there), stream.begin());
@@ -40,13 +40,13 @@ void append_frame(std::vector<std::byte>& stream, const FrameHead& head, std::sp
   const std::size_t begin = stream.size();
   stream.resize(begin + kBeforeBits);
   ByteWriter front{std::span(stream).subspan(begin)};
-  front.put(kMark, 1);
+  front.put(kFrameMark, 1);
   for (const std::uint32_t field : {kLineKind, head.sequence, head.revolution, head.line, head.first_slot,
                                     static_cast<std::uint32_t>(bits.size())}) {
     front.put(field, 4);
   }
   stream.insert(stream.end(), bits.begin(), bits.end());
-  const std::uint32_t crc = checksum(std::span(stream).subspan(begin));
+  const std::uint32_t crc = frame_checksum(std::span(stream).subspan(begin));
   stream.resize(stream.size() + kCheckBytes);
   ByteWriter(std::span(stream).last(kCheckBytes)).put(crc, kCheckBytes);
 }
@@ -73,7 +73,7 @@ Result<std::optional<Frame>> decode_frame(std::span<const std::byte> stream) {
   }
   frame.bits = stream.subspan(kBeforeBits, length);
   if (ByteReader(stream.subspan(kBeforeBits + length)).take(kCheckBytes) !=
-      checksum(stream.first(kBeforeBits + length))) {
+      frame_checksum(stream.first(kBeforeBits + length))) {
     return not_a_frame("checksum of sequence " + std::to_string(frame.head.sequence) + " is wrong");
   }
   return std::optional(frame);

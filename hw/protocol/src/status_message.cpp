@@ -8,12 +8,12 @@
 namespace gravure::protocol {
 namespace {
 
-constexpr std::uint32_t kMark = 0x5356'5247;  // "GRVS"
+constexpr std::uint32_t kStatusMark = 0x5356'5247;  // "GRVS"
 constexpr std::size_t kCheckedBytes = kStatusBytes - 4;
 constexpr std::uint64_t kGateDark = 1;
 constexpr std::uint64_t kPartialLine = 2;
 
-std::uint32_t checksum(std::span<const std::byte> message) {
+std::uint32_t status_checksum(std::span<const std::byte> message) {
   return ~crc32c_continue(kCrc32cStart, message.first(kCheckedBytes));
 }
 
@@ -26,7 +26,7 @@ Error nonsense(const std::string& what) {
 std::array<std::byte, kStatusBytes> encode_status(const BoardStatus& status) {
   std::array<std::byte, kStatusBytes> message{};
   ByteWriter out(message);
-  out.put(kMark, 4);
+  out.put(kStatusMark, 4);
   out.put(status.protocol_version, 2);
   out.put(static_cast<std::uint8_t>(status.state), 1);
   out.put(static_cast<std::uint8_t>(status.fault), 1);
@@ -40,7 +40,7 @@ std::array<std::byte, kStatusBytes> encode_status(const BoardStatus& status) {
                                     status.closed_slot, status.level_bytes, status.capacity_bytes}) {
     out.put(field, 4);
   }
-  ByteWriter(std::span(message).last(4)).put(checksum(message), 4);
+  ByteWriter(std::span(message).last(4)).put(status_checksum(message), 4);
   return message;
 }
 
@@ -49,7 +49,7 @@ Result<BoardStatus> decode_status(std::span<const std::byte> message) {
     return nonsense(std::to_string(message.size()) + " bytes, must be " + std::to_string(kStatusBytes));
   }
   ByteReader in(message);
-  if (in.take(4) != kMark) {
+  if (in.take(4) != kStatusMark) {
     return nonsense("it does not begin with GRVS");
   }
   BoardStatus status;
@@ -59,7 +59,7 @@ Result<BoardStatus> decode_status(std::span<const std::byte> message) {
                                                   " of the protocol, this program version " +
                                                   std::to_string(kProtocolVersion) + ": update the older one"};
   }
-  if (ByteReader(message.last(4)).take(4) != checksum(message)) {
+  if (ByteReader(message.last(4)).take(4) != status_checksum(message)) {
     return nonsense("its checksum is wrong");
   }
   const std::uint64_t state = in.take(1);

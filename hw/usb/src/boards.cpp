@@ -13,7 +13,7 @@ namespace gravure::usb {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience{5000};
-constexpr std::chrono::milliseconds kSlice{100};
+constexpr std::chrono::milliseconds kEventSlice{100};
 
 /// Registers and status, which need no claim; the first thing that is wrong.
 Result<void> question(libusb_device_handle* handle, BoardReport& report) {
@@ -112,7 +112,7 @@ Result<bool> wait_for_board(const std::string& serial, std::chrono::milliseconds
     if (stop && stop()) {
       return Error{ErrorCode::cancelled, "waiting for a board: stopped on request"};
     }
-    timeval slice{0, static_cast<suseconds_t>(1000 * std::min(left, kSlice).count())};
+    timeval slice{0, static_cast<suseconds_t>(1000 * std::min(left, kEventSlice).count())};
     libusb_handle_events_timeout_completed(context.get(), &slice, nullptr);
   }
 }

@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFrame = protocol::kFrameBytes + 2;  // of wire_setup()
-
 class BoardInAFolder : public testing::Test {
  protected:
   BoardInAFolder()
@@ -124,7 +122,7 @@ TEST_F(BoardInAFolder, DoesWhatItHadToDoWithoutItsHost) {
   EXPECT_EQ(board.value().status().fault, DeviceFault::underrun);
   EXPECT_EQ(board.value().status().executed_lines, 7U);
   expect_fired(7);
-  EXPECT_EQ(board.value().take(test::wire_stream(setup_, 7, 7)), kFrame) << "held, not looked at";
+  EXPECT_EQ(board.value().take(test::wire_stream(setup_, 7, 7)), test::kFrame) << "held, not looked at";
   board.value().pass_time();
   expect_fired(7);
 }
@@ -241,13 +239,13 @@ TEST_F(BoardInAFolder, ComesBackWhereverAFileBreaksOff) {
     prepare(board.value(), setup_);
     start(board.value());
     std::vector<std::byte> stream = test::wire_stream(setup_, 0, 7);
-    stream[6 * kFrame + 26] ^= std::byte{0x40};  // closes the gate in a slot that the seed chooses
+    stream[6 * test::kFrame + 26] ^= std::byte{0x40};  // closes the gate in a slot that the seed chooses
     ASSERT_NE(board.value().take(stream), 0U);
     board.value().pass_time();
   }
   const std::string lines = contents(folder_ + "/fired");
   const std::string host = contents(folder_ + "/host");
-  for (std::size_t size = kFrame; size < lines.size(); ++size) {
+  for (std::size_t size = test::kFrame; size < lines.size(); ++size) {
     put(folder_ + "/host", host);
     put(folder_ + "/fired", lines.substr(0, size));
     const Result<EmulatedBoard> board = open();

@@ -20,8 +20,6 @@ using test::wire_line;
 using test::wire_setup;
 using test::wire_stream;
 
-constexpr std::size_t kFrame = protocol::kFrameBytes + 2;  // of wire_setup()
-
 class Board : public testing::Test {
  protected:
   explicit Board(BoardOptions options = {})
@@ -165,7 +163,7 @@ TEST_F(Board, TakesAnyCutsOfTheStream) {
     const auto part = std::span(stream).subspan(at).first(std::min<std::size_t>(7, stream.size() - at));
     ASSERT_EQ(board_.take(part), part.size());
     board_.pass_time();
-    EXPECT_EQ(board_.status().executed_lines, (at + part.size()) / kFrame);
+    EXPECT_EQ(board_.status().executed_lines, (at + part.size()) / test::kFrame);
   }
   expect_lines(setup, 12);
 }
@@ -183,7 +181,7 @@ TEST_P(BadFrame, ClosesTheGateInALineBeforeIt) {
   prepare(setup);
   start();
   std::vector<std::byte> stream = wire_stream(setup, 0, 7);
-  stream[5 * kFrame + GetParam().byte] ^= GetParam().mask;
+  stream[5 * test::kFrame + GetParam().byte] ^= GetParam().mask;
   ASSERT_EQ(board_.take(stream), stream.size());
   board_.pass_time();
   const BoardStatus status = board_.status();
@@ -236,17 +234,17 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{25, std::byte{1}, DeviceFault::checksum}, Wrong{30, std::byte{0x40}, DeviceFault::checksum}));
 
 TEST_F(Board, HoldsNoMoreThanItsCapacity) {
-  board_ = EmulatedBoard({.capacity_bytes = 5 * kFrame + 3, .observer = &recorder_});
+  board_ = EmulatedBoard({.capacity_bytes = 5 * test::kFrame + 3, .observer = &recorder_});
   const DeviceSetup setup = wire_setup();
   prepare(setup);
   const std::vector<std::byte> stream = wire_stream(setup, 0, 11);
-  EXPECT_EQ(board_.take(stream), 5 * kFrame + 3);
-  EXPECT_EQ(board_.take(std::span(stream).subspan(5 * kFrame + 3)), 0U);
+  EXPECT_EQ(board_.take(stream), 5 * test::kFrame + 3);
+  EXPECT_EQ(board_.take(std::span(stream).subspan(5 * test::kFrame + 3)), 0U);
   start();
   board_.pass_time();
   EXPECT_EQ(board_.status().executed_lines, 5U);
   EXPECT_EQ(board_.status().level_bytes, 3U);
-  EXPECT_EQ(board_.take(std::span(stream).subspan(5 * kFrame + 3)), 5 * kFrame);
+  EXPECT_EQ(board_.take(std::span(stream).subspan(5 * test::kFrame + 3)), 5 * test::kFrame);
   board_.pass_time();
   expect_lines(setup, 10);
 }
@@ -381,7 +379,7 @@ TEST(EmulatedLink, GivesEveryStatusOnce) {
 }
 
 TEST(EmulatedLink, SendsAJobLargerThanTheBoard) {
-  EmulatedLink link{EmulatedBoard({.capacity_bytes = 2 * kFrame})};
+  EmulatedLink link{EmulatedBoard({.capacity_bytes = 2 * test::kFrame})};
   const DeviceSetup setup = wire_setup();
   for (const test::Write& one : test::preparation(setup, 100)) {
     ASSERT_TRUE(link.write_register(one.address, one.value));

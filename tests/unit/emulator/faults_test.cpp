@@ -11,8 +11,6 @@ using test::Frame;
 using test::Recorder;
 using test::small_setup;
 
-constexpr std::int64_t kLineTicks = 60;
-
 struct Outcome {
   std::vector<DarkLines> dark;
   std::vector<Recorder::Line> lines;
@@ -47,13 +45,13 @@ TEST_P(InjectedFault, KeepsTheGateDarkToTheEnd) {
     const DeviceFault fault = last_lost ? DeviceFault::underrun : GetParam().fault;
     ASSERT_EQ(seen.dark.size(), 1U);
     EXPECT_EQ(seen.dark[0].fault, fault);
-    EXPECT_EQ(seen.dark[0].tick, at * kLineTicks);
+    EXPECT_EQ(seen.dark[0].tick, at * test::kLineTicks);
     EXPECT_EQ(seen.dark[0].first, at);
     EXPECT_EQ(seen.dark[0].last, 11);
     EXPECT_FALSE(seen.dark[0].detail.empty());
     EXPECT_EQ(seen.status.fault, fault);
     EXPECT_EQ(seen.status.lines_executed, at);
-    EXPECT_EQ(seen.status.tick, 12 * kLineTicks) << "the machine never waits";
+    EXPECT_EQ(seen.status.tick, 12 * test::kLineTicks) << "the machine never waits";
     ASSERT_EQ(seen.lines.size(), 12U);
     for (std::int64_t line = 0; line < 12; ++line) {
       EXPECT_EQ(seen.lines[static_cast<std::size_t>(line)].dark(), line >= at) << "line " << line;

@@ -15,8 +15,8 @@ namespace {
 using test::Frame;
 using test::small_setup;
 
-constexpr std::uint64_t kLineTicks = 60;
-constexpr std::uint64_t kEnd = 12 * kLineTicks;
+constexpr std::uint64_t kTicksOfLine = 60;
+constexpr std::uint64_t kEnd = 12 * kTicksOfLine;
 
 /// Puts the changes back to what a sample on every tick would be.
 class Samples final : public WaveSink {
@@ -84,7 +84,7 @@ std::vector<SignalValues> clock_by_clock(std::int64_t slots_per_microvector) {
   for (std::uint64_t line = 0; line < 12; ++line) {
     Frame frame(static_cast<std::int64_t>(line / 4), static_cast<std::int64_t>(line % 4));
     gate->start_line(frame.bits(), static_cast<std::uint64_t>(frame->first_slot));
-    for (std::uint64_t tick = 0; tick < kLineTicks; ++tick) {
+    for (std::uint64_t tick = 0; tick < kTicksOfLine; ++tick) {
       const auto slot = static_cast<std::int64_t>(tick / 3);
       const bool strobe = tick % 3 == 0;
       samples.push_back({pins.a ? 1U : 0U, pins.b ? 1U : 0U, gate->step().gate ? 1U : 0U, tick == 0 ? 1U : 0U,
@@ -116,10 +116,10 @@ DeviceSetup pass_setup(std::int64_t pass) {
 }
 
 TEST(MachineWaves, BeginEveryRunWithItsCounterAndGoBackWithThePinsExchanged) {
-  for (const std::uint64_t first : {std::uint64_t{0}, 3 * kLineTicks + 7, 4 * kLineTicks, 6 * kLineTicks + 1}) {
+  for (const std::uint64_t first : {std::uint64_t{0}, 3 * kTicksOfLine + 7, 4 * kTicksOfLine, 6 * kTicksOfLine + 1}) {
     Samples samples;
     MachineWaves::Setup shown = wave_setup(first, kEnd - 1, 1);
-    const std::int64_t first_pass = static_cast<std::int64_t>(first / (4 * kLineTicks));
+    const std::int64_t first_pass = static_cast<std::int64_t>(first / (4 * kTicksOfLine));
     shown.device = pass_setup(first_pass);
     MachineWaves waves(shown, samples);
     EmulatedDevice device(&waves);
@@ -137,13 +137,13 @@ TEST(MachineWaves, BeginEveryRunWithItsCounterAndGoBackWithThePinsExchanged) {
     ASSERT_EQ(seen.size(), kEnd - first);
     const DeviceSetup setup = small_setup();
     for (std::uint64_t tick = first; tick < kEnd; ++tick) {
-      const std::uint64_t pass = tick / (4 * kLineTicks);
+      const std::uint64_t pass = tick / (4 * kTicksOfLine);
       const fpga::AbPins pins = fpga::position_after({.bits = setup.counter_bits,
                                                       .prescaler = setup.prescaler,
                                                       .increment = setup.increment,
                                                       .fraction_num = setup.fraction_num,
                                                       .fraction_den = setup.fraction_den},
-                                                     tick - pass * 4 * kLineTicks)
+                                                     tick - pass * 4 * kTicksOfLine)
                                     .pins;
       ASSERT_EQ(seen[tick - first][0], (pass == 1 ? pins.b : pins.a) ? 1U : 0U) << "A at tick " << tick;
       ASSERT_EQ(seen[tick - first][1], (pass == 1 ? pins.a : pins.b) ? 1U : 0U) << "B at tick " << tick;
@@ -162,7 +162,7 @@ TEST(MachineWaves, ShowsAnyWindowOfThatFromItsOwnLinesAlone) {
     Samples samples;
     MachineWaves waves(wave_setup(first, last, 4), samples);
     EmulatedDevice device(&waves);
-    run_lines(device, static_cast<std::int64_t>(first / kLineTicks), static_cast<std::int64_t>(last / kLineTicks));
+    run_lines(device, static_cast<std::int64_t>(first / kTicksOfLine), static_cast<std::int64_t>(last / kTicksOfLine));
     waves.finish();
     const std::vector<SignalValues> expected(all.begin() + static_cast<std::ptrdiff_t>(first),
                                              all.begin() + static_cast<std::ptrdiff_t>(last) + 1);
@@ -180,7 +180,7 @@ TEST(MachineWaves, HoldsStrobesForOneSeedClock) {
   waves.finish();
   const auto& seen = samples.to(kEnd - 1);
   for (std::uint64_t tick = 0; tick < kEnd; ++tick) {
-    const std::uint64_t in_line = tick % kLineTicks;
+    const std::uint64_t in_line = tick % kTicksOfLine;
     EXPECT_EQ(seen[tick][static_cast<std::size_t>(Signal::line_start)], in_line < 2 ? 1U : 0U) << tick;
     EXPECT_EQ(seen[tick][static_cast<std::size_t>(Signal::scanner_clock)], in_line % 15 < 2 ? 1U : 0U) << tick;
   }

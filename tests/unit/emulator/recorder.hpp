@@ -40,6 +40,8 @@ class Recorder final : public PinObserver {
   std::vector<Line> lines;
 };
 
+inline constexpr std::int64_t kLineTicks = 60;  ///< of small_setup()
+
 /// 3 revolutions of 4 lines of 20 slots, 13 of them in the window; 3 ticks a slot.
 inline DeviceSetup small_setup() {
   return {.counter_bits = 16,

@@ -12,7 +12,7 @@ namespace gravure::emulator {
 namespace {
 
 /// Clocks of the whole board's model at which a pin of axis 0 changes, from the write of `go` on.
-class Board {
+class BoardAxis {
  public:
   void write(const fpga::Register& target, std::uint64_t value) {
     for (int word = 0; word < (target.bits > 32 ? 2 : 1); ++word) {
@@ -45,7 +45,7 @@ class Board {
 /// The board, its registers loaded at rest, the schedule appended, and go; then `after` more clocks.
 std::vector<std::uint64_t> board_edges(const fpga::AbRegisters& registers, const std::vector<ScheduleSegment>& schedule,
                                        std::uint64_t clocks) {
-  Board board;
+  BoardAxis board;
   fpga::Synchro::Inputs reset;
   reset.rst = true;
   board.hold(reset, 8);

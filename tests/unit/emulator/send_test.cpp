@@ -13,8 +13,6 @@ using test::Recorder;
 using test::send;
 using test::small_setup;
 
-constexpr std::int64_t kLineTicks = 60;
-
 class EmulatedDeviceSend : public testing::Test {
  protected:
   void SetUp() override { ASSERT_TRUE(device_.configure(small_setup())); }
@@ -36,14 +34,14 @@ TEST_F(EmulatedDeviceSend, RunsAWholeJobBitByBit) {
       ASSERT_TRUE(result) << result.error().message;
       const Recorder::Line& seen = recorder_.lines.back();
       EXPECT_EQ(seen.ordinal, revolution * 4 + line);
-      EXPECT_EQ(seen.start_tick, (revolution * 4 + line) * kLineTicks);
+      EXPECT_EQ(seen.start_tick, (revolution * 4 + line) * test::kLineTicks);
       EXPECT_EQ(seen.first_slot, 3 + line);
       EXPECT_EQ(seen.fired, frame.bits());
     }
   }
   EXPECT_EQ(recorder_.lines.size(), 12U);
   EXPECT_EQ(device_.status().lines_executed, 12);
-  EXPECT_EQ(device_.status().tick, 12 * kLineTicks);
+  EXPECT_EQ(device_.status().tick, 12 * test::kLineTicks);
   EXPECT_EQ(device_.status().fault, DeviceFault::none);
 }
 
@@ -53,7 +51,7 @@ TEST_F(EmulatedDeviceSend, RefusesAnyLineAfterTheLast) {
   }
   expect_refused(send(device_, 3, 0), {"sequence", "revolution 3, line 0", "is over"});
   EXPECT_EQ(device_.status().fault, DeviceFault::sequence);
-  EXPECT_EQ(device_.status().tick, 12 * kLineTicks);
+  EXPECT_EQ(device_.status().tick, 12 * test::kLineTicks);
   EXPECT_EQ(recorder_.lines.size(), 12U);
 }
 
@@ -143,13 +141,13 @@ TEST_F(EmulatedDeviceSend, KeepsTimeAndAxisRunningThroughAFault) {
   ASSERT_TRUE(send(device_, 0, 0));
   EXPECT_FALSE(send(device_, 0, 3));
   EXPECT_FALSE(send(device_, 0, 2));
-  EXPECT_EQ(device_.status().tick, 3 * kLineTicks);
+  EXPECT_EQ(device_.status().tick, 3 * test::kLineTicks);
   EXPECT_EQ(device_.status().lines_executed, 1);
   device_.acknowledge();
   EXPECT_EQ(device_.status().fault, DeviceFault::none);
   ASSERT_TRUE(send(device_, 0, 3));
   EXPECT_FALSE(recorder_.lines.back().dark());
-  EXPECT_EQ(recorder_.lines.back().start_tick, 3 * kLineTicks);
+  EXPECT_EQ(recorder_.lines.back().start_tick, 3 * test::kLineTicks);
 }
 
 TEST_F(EmulatedDeviceSend, KeepsTheFirstFault) {

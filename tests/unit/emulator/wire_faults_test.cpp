@@ -10,7 +10,6 @@
 namespace gravure::emulator {
 namespace {
 
-constexpr std::size_t kFrame = protocol::kFrameBytes + 2;  // of wire_setup()
 constexpr auto kPatience = DeviceLink::Milliseconds(0);
 
 TEST(ParseWireFault, ReadsWhatItWrites) {
@@ -121,7 +120,7 @@ struct Expected {
 class FaultOfTheBoard : public testing::TestWithParam<Expected> {};
 
 TEST_P(FaultOfTheBoard, IsNamedAndFiresNothingElse) {
-  Host host(GetParam().fault, kFrame);  // frame by frame: no line runs when a frame comes
+  Host host(GetParam().fault, test::kFrame);  // frame by frame: no line runs when a frame comes
   ASSERT_TRUE(host.run());
   const BoardStatus status = host.board->status();
   EXPECT_EQ(status.fault, GetParam().named);
@@ -146,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, FaultOfTheBoard,
                                          Expected{"corrupt@byte=180", DeviceFault::checksum, 5, 0}));  // its first bits
 
 TEST(FaultOfTheBoard, LosesAFrameBetweenOthers) {
-  Host host("lost@line=6", 12 * kFrame);
+  Host host("lost@line=6", 12 * test::kFrame);
   ASSERT_TRUE(host.run());
   EXPECT_EQ(host.board->status().fault, DeviceFault::sequence);
   EXPECT_EQ(host.board->status().taken_lines, 6U);
@@ -156,14 +155,14 @@ TEST(FaultOfTheBoard, TakesNoByteAnyMoreWhereItIsFull) {
   Host host("full@byte=100");
   ASSERT_TRUE(host.run());
   EXPECT_EQ(host.sent, 100U);
-  EXPECT_EQ(host.board->status().executed_lines, 100U / kFrame);
+  EXPECT_EQ(host.board->status().executed_lines, 100U / test::kFrame);
   const auto more = host.link->send(std::vector<std::byte>(5), DeviceLink::Milliseconds(20));
   ASSERT_TRUE(more);
   EXPECT_EQ(more.value(), 0U);
 }
 
 TEST(FaultOfTheBoard, ForgetsAllWhereThePowerGoes) {
-  Host host("power@line=3+7", 12 * kFrame);
+  Host host("power@line=3+7", 12 * test::kFrame);
   ASSERT_TRUE(host.run());
   host.expect_fired(3, 7);
   const BoardStatus status = host.board->status();
@@ -214,7 +213,7 @@ TEST(FaultOfTheLink, LeavesTheBoardWithoutAHost) {
 TEST(FaultOfTheLink, CutsATransferShort) {
   Host host("short@byte=77");
   ASSERT_TRUE(host.run());
-  EXPECT_EQ(host.sent, 12 * kFrame);
+  EXPECT_EQ(host.sent, 12 * test::kFrame);
   host.expect_fired(12);
 }
 
@@ -227,7 +226,7 @@ TEST(FaultOfTheLink, GivesStatusesLate) {
     EXPECT_FALSE(host.statuses[late]) << late;
   }
   ASSERT_TRUE(host.statuses[5]);
-  EXPECT_EQ(host.statuses[5]->executed_lines, 6 * 50 / kFrame);
+  EXPECT_EQ(host.statuses[5]->executed_lines, 6 * 50 / test::kFrame);
 }
 
 TEST(FaultOfTheLink, GivesStatusesInTheWrongOrder) {

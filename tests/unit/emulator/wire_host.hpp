@@ -11,6 +11,8 @@
 
 namespace gravure::emulator::test {
 
+inline constexpr std::size_t kFrame = protocol::kFrameBytes + 2;  ///< bytes, of wire_setup()
+
 /// Bits of the registers control and command.
 inline constexpr std::uint32_t kRunTimed = 1U | 2U | 8U | 16U;  // slots, both axes, from first_tick on
 inline constexpr std::uint32_t kWatch = 4;

@@ -6,11 +6,10 @@
 #include "gravure/motion/ruled_blade.hpp"
 #include "gravure/motion/unreverse.hpp"
 #include "motion_test_support.hpp"
+#include "vector3.hpp"
 
 namespace gravure::motion {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 void expect_axes(const AxisPose& pose, const std::array<double, 5>& expected) {
   EXPECT_NEAR(pose.x_mm, expected[0], 5e-8);

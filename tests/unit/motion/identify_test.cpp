@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "gravure/motion/plan_profile.hpp"
 #include "indexing_models.hpp"
@@ -10,8 +11,6 @@
 
 namespace gravure::motion {
 namespace {
-
-constexpr double kTwoPi = 6.283185307179586;
 
 /// What a sensor on the carried part would record, with noise of `noise` mm/s^2.
 IdentifyRequest recorded(const std::vector<Mode>& modes, const std::vector<InputJump>& input, RecordingOf of,
@@ -157,7 +156,7 @@ IdentifyRequest rung(const std::vector<Ringing>& modes, double length_s, double 
     const double t = k / sample_hz;
     double value = noise * random.gaussian();
     for (const Ringing& m : modes) {
-      const double w = kTwoPi * m.f_hz;
+      const double w = 2 * std::numbers::pi * m.f_hz;
       value += m.amplitude * std::exp(-m.zeta * w * t) * std::cos(w * std::sqrt(1 - m.zeta * m.zeta) * t + m.phase_rad);
     }
     request.recording.time_s.push_back(t);
@@ -174,7 +173,7 @@ TEST(Identify, SaysHowCloseTwoModesMayBeAndNeverMergesAWiderPairInSilence) {
   for (int trial = 0; trial < 40; ++trial) {
     const double zeta = random.between(0.002, 0.02);
     const double gap_hz = 0.1 * std::exp(random.between(0, 4));
-    const double phase = random.between(0, kTwoPi);
+    const double phase = random.between(0, 2 * std::numbers::pi);
     const auto found = identify(rung({{60 - gap_hz / 2, zeta, 500, phase}, {60 + gap_hz / 2, zeta, 500, phase}}, 1,
                                      1000, std::exp(random.between(-1, 4)), random));
     if (!found) {
@@ -206,7 +205,7 @@ TEST(Identify, TellsAPairApartThatIsWiderThanTheResolutionOfTheRecord) {
   for (int trial = 0; trial < kTrials; ++trial) {
     const double zeta = random.between(0.002, 0.01);
     const double noise = std::exp(random.between(0, 3));
-    const double phase = random.between(0, kTwoPi);
+    const double phase = random.between(0, 2 * std::numbers::pi);
     const auto one = identify(rung({{60, zeta, 1000, phase}}, 1, 1000, noise, random));
     ASSERT_TRUE(one) << one.error().message;
     ASSERT_EQ(one.value().modes.size(), 1U);
@@ -251,7 +250,7 @@ TEST(Identify, WarnsOfModesThatMayBeFolded) {
   GRAVURE_TRACE_SEED();
   test::Random random(test::seed() + 8);
   for (int trial = 0; trial < 5; ++trial) {
-    const double phase = random.between(0, kTwoPi);
+    const double phase = random.between(0, 2 * std::numbers::pi);
     const double f_hz = random.between(560, 790);
     const auto folded = identify(rung({{f_hz, 0.005, 1000, phase}}, 1, 1000, 10, random));
     ASSERT_TRUE(folded) << folded.error().message;
@@ -268,7 +267,7 @@ TEST(Identify, WarnsOfAVibrationAtHalfTheSampleRateBesideTheMode) {
   GRAVURE_TRACE_SEED();
   test::Random random(test::seed() + 9);
   for (int trial = 0; trial < 20; ++trial) {
-    const double phase = random.between(0, kTwoPi);
+    const double phase = random.between(0, 2 * std::numbers::pi);
     const double f_hz = random.between(496, 504);
     const auto found = identify(rung({{60, 0.01, 1000, phase}, {f_hz, 0.001, 200, 0.5}}, 1, 1000, 5, random));
     EXPECT_TRUE(found ? warns_of(found.value(), "sample faster")

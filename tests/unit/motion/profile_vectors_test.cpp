@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "gravure/motion/plan_profile.hpp"
+#include "indexing_models.hpp"
 
 namespace gravure::motion {
 namespace {
 
-SFactorRequest indexing(double v, double a_up, double a_down, double s_factor) {
-  return {{20, v, a_up, a_down, 0, 0}, s_factor, 250};
-}
+using test::indexing;
 
 struct Row {
   const char* name;

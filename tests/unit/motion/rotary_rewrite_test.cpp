@@ -8,11 +8,11 @@
 
 #include "gravure/motion/unreverse.hpp"
 #include "motion_test_support.hpp"
+#include "vector3.hpp"
 
 namespace gravure::motion {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr const char* kProgram =
     "( a short path )\n"
     "G90 G21 G93\n"

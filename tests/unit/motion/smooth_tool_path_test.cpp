@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
+#include "vector3.hpp"
+
 namespace gravure::motion {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 /// A focus that travels along y between two walls at x = -6 and x = 6, the beam tilted by 20 degrees; C wobbles by half
 /// a degree about 0 and so does A.

@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "gravure/core/units.hpp"
 #include "pipeline_support.hpp"
 
 namespace gravure::test {
 namespace {
-
-constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 
 /// Widths around whole bytes and words, and the published line; odd and even lines per revolution.
 struct Shape {

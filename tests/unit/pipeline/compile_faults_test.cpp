@@ -1,5 +1,6 @@
 #include <optional>
 
+#include "gravure/core/units.hpp"
 #include "pipeline_support.hpp"
 
 namespace gravure::test {
@@ -122,7 +123,6 @@ TEST(CompileFault, ABudgetTooSmallNamesTheNeed) {
 }
 
 TEST(CompileFault, WhatTheReadersHoldCountsInTheBudget) {
-  constexpr std::int64_t kMiB = 1 << 20;
   for (const bool told : {false, true}) {
     MemoryImages images;
     LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::rows, 40, 80, 2, 1);

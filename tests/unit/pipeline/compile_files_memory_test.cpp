@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "gravure/core/units.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "naive_compile.hpp"
 #include "temp_folder.hpp"
@@ -18,8 +19,6 @@
 /// it.
 namespace gravure::test {
 namespace {
-
-constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kSanitized = true;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "gravure/core/units.hpp"
 #include "pipeline_support.hpp"
 
 /// Every allocation of this test program is counted, so that what compile() holds at once is measured, not believed.
@@ -99,7 +100,6 @@ std::int64_t peak_of(const Case& what, std::int64_t memory, int threads) {
 }
 
 TEST(CompileMemory, StaysWithinTheBudgetWhateverTheSizeOfTheImages) {
-  constexpr std::int64_t kMiB = std::int64_t{1} << 20;
   struct Row {
     Case what;
     std::int64_t memory;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dice.hpp"
+#include "gravure/core/units.hpp"
 #include "naive_compile.hpp"
 
 namespace gravure::test {
@@ -120,7 +121,6 @@ TEST(Tiles, PassOnThatATileIsDamagedAndReadOn) {
 }
 
 TEST(Tiles, HoldSomeRowsOfTheTileHoweverLargeThePicture) {
-  constexpr std::int64_t kMiB = std::int64_t{1} << 20;
   const TileGrid many{1000, 1000, true, true};
   EXPECT_EQ(tiled_info(tile_info(SampleType::bit, 80'000, 50'000), many).decoder_bytes, kMiB / 10'000 * 10'000);
   EXPECT_EQ(tiled_info(tile_info(SampleType::u16, 4 * kMiB, 3), many).decoder_bytes, 8 * kMiB) << "a row at least";
@@ -129,7 +129,6 @@ TEST(Tiles, HoldSomeRowsOfTheTileHoweverLargeThePicture) {
 }
 
 TEST(Tiles, CompileToThePulsesOfThePictureTheyMakeInLittleMemory) {
-  constexpr std::int64_t kMiB = std::int64_t{1} << 20;
   MemoryImages images;
   LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::rows, 50, 3000, 2, 5);
   stack.tiles = {40, 20, true, true};  // 120,000 x 1000 pixels: 15 MB

@@ -27,7 +27,7 @@ std::vector<Contour> rings() {
 }
 
 /// Bent out of the surface: by up to a millimetre, more towards the tip.
-Point3 bent(Point3 point) {
+Point3 bent_point(Point3 point) {
   point[1] += 1.0 * std::pow(std::max(0.0, point[2]) / BladeSurface::kSpanMm, 2);
   return point;
 }
@@ -47,7 +47,7 @@ Errors errors_of(const std::vector<PlacedContour>& placed, const std::vector<Con
       const Point3 normal =
           BladeSurface::on_blade(0.4 + 2.3 * static_cast<double>(i) / 40, 10 + 14.0 * static_cast<double>(k)).normal;
       const Eigen::Vector3d off =
-          vec(placed[k].contour.points_mm[i]) - vec(truth.point(bent(contours[k].points_mm[i])));
+          vec(placed[k].contour.points_mm[i]) - vec(truth.point(bent_point(contours[k].points_mm[i])));
       squares += std::pow(vec(truth.direction(normal)).dot(off), 2);
       ++count;
     }
@@ -64,7 +64,7 @@ TEST(RefineContours, FollowABentPartBetterThanTheWholePose) {
   Dice dice;
   const PointSet cad = BladeSurface::points(60'000, dice);
   PointSet scan = without_normals(BladeSurface::points(60'000, dice));
-  std::transform(scan.points_mm.begin(), scan.points_mm.end(), scan.points_mm.begin(), bent);
+  std::transform(scan.points_mm.begin(), scan.points_mm.end(), scan.points_mm.begin(), bent_point);
   const Similarity truth = pose(0.2, {1, 2, 3}, {5, -3, 2}, 1.01);
   scan = moved(scan, truth, 0.01, dice);
   RegistrationOptions options;

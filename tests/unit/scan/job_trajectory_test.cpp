@@ -12,7 +12,7 @@ namespace {
 using test::scanner_job;
 using test::scanner_plan;
 
-constexpr LandingModel kIdeal{0, false, false};
+constexpr LandingModel kIdealMirrors{0, false, false};
 constexpr double kNothing_mm = 1e-9;  // 1e-6 um
 
 JobTrajectory made(const Plan& plan) {
@@ -37,7 +37,7 @@ void expect_on_target(const Plan& plan) {
         const Stretch stretch = map.stretch(revolution, line, index);
         for (std::int64_t i = 0; i < stretch.columns; i += 7) {
           const std::int64_t slot = timing.slot_of_pixel(job.direction_of(number), stretch.first_pixel + i);
-          const auto state = job.at(number, slot, kIdeal);
+          const auto state = job.at(number, slot, kIdealMirrors);
           ASSERT_TRUE(state) << state.error().message;
           const kinematics::Vector3& spot = state.value().spot_mm;
           const auto image_line = static_cast<double>(map.image_line(revolution, line));
@@ -170,7 +170,7 @@ TEST(JobTrajectory, CountsTicksAndTurnsFromTheStartOfTheJob) {
   const Plan plan = scanner_plan(settings);
   ASSERT_EQ(plan.line.offset_remainder_ticks, 18);
   const JobTrajectory job = made(plan);
-  const auto state = job.at({1, 3}, 5, kIdeal).value();
+  const auto state = job.at({1, 3}, 5, kIdealMirrors).value();
   EXPECT_EQ(state.tick, (203 * plan.line.slots + 5) * 82 + 18) << "reverse lines fire later by the remainder";
   EXPECT_NEAR(state.joints[0], 6.283185307179586 * 203 / 200, 0.04);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "gravure/scan/job_trajectory.hpp"
 #include "plans.hpp"
@@ -17,8 +18,6 @@ using kinematics::Side;
 using kinematics::Vector3;
 using test::scanner_job;
 using test::scanner_plan;
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A lathe: the axis lies 20 mm below and 3 mm beside the focus at 0, which is 10 mm along U; x counts against U.
 Machine lathe() {
@@ -61,10 +60,10 @@ TEST(JointReach, PutsTheFocusOverTheLineOfATurningWorkpiece) {
     joints.push_back(joint.kind == JointKind::revolute ? 0 : joint.least);
   }
   const kinematics::Spot spot = kinematics::forward(machine, joints, {});
-  const double radius_mm = 1.6 / 2 / kPi;
+  const double radius_mm = 1.6 / 2 / std::numbers::pi;
   EXPECT_NEAR(spot.position_mm.x(), 149 * 0.008 / 2, 1e-12) << "the middle of the columns";
   EXPECT_NEAR(spot.position_mm.y(), 3, 1e-12) << "over the axis";
-  EXPECT_NEAR(spot.position_mm.z(), -20 + radius_mm * std::cos(kPi / 6), 1e-12);
+  EXPECT_NEAR(spot.position_mm.z(), -20 + radius_mm * std::cos(std::numbers::pi / 6), 1e-12);
 }
 
 TEST(JointReach, HoldsEveryPositionOfEveryLine) {
@@ -129,7 +128,7 @@ TEST(JointReach, CountsTheRampsAtBothEnds) {
 
 TEST(JointReach, RefusesWhatLeavesItsLimitsByNameValueAndLimit) {
   Machine machine = lathe();
-  machine.joints[0].limits.least = -720 * kPi / 180;
+  machine.joints[0].limits.least = -720 * std::numbers::pi / 180;
   machine.joints[3].limits.most = -20.5;
   machine.joints[1].limits.most = 9;
   const std::vector<JointReach> reach = reach_of(machine, scanner_plan(scanner_job(Mode::rotary)));
@@ -142,7 +141,7 @@ TEST(JointReach, RefusesWhatLeavesItsLimitsByNameValueAndLimit) {
   machine.joints[1].limits.most = 9.5;
   machine.joints[3].limits.most = -19;
   EXPECT_TRUE(check_reach(reach_of(machine, scanner_plan(scanner_job(Mode::rotary)))));
-  machine.joints[0].limits.least = -719 * kPi / 180;
+  machine.joints[0].limits.least = -719 * std::numbers::pi / 180;
   EXPECT_FALSE(check_reach(reach_of(machine, scanner_plan(scanner_job(Mode::rotary)))));
 }
 

@@ -1,5 +1,7 @@
 #include "gravure/scan/plan_trajectory.hpp"
 
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "plans.hpp"
@@ -9,8 +11,6 @@ namespace {
 
 using test::scanner_job;
 using test::scanner_plan;
-
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(PlanTrajectory, TakesHeadAndOptionsFromThePlan) {
   Job job = scanner_job(Mode::rotary);
@@ -25,7 +25,7 @@ TEST(PlanTrajectory, TakesHeadAndOptionsFromThePlan) {
   EXPECT_EQ(head.resolution_bits, 18);
   EXPECT_EQ(head.lag_us, ratio(25, 2));
   EXPECT_EQ(head.lens, kinematics::Lens::f_theta);
-  EXPECT_DOUBLE_EQ(head.tilt_rad_per_mm, 0.35 * kPi / 180);
+  EXPECT_DOUBLE_EQ(head.tilt_rad_per_mm, 0.35 * std::numbers::pi / 180);
   EXPECT_EQ(head.max_speed_mm_s, 40'000);
   EXPECT_EQ(head.max_acceleration_mm_s2, 4e7);
   EXPECT_EQ(head.max_jerk_mm_s3, 4e12);
@@ -58,7 +58,7 @@ TEST(PlanTrajectory, FollowsTheCarriageAndTheStage) {
   ASSERT_TRUE(screw) << screw.error().message;
   const auto slots = static_cast<double>(helical.line.slots);
   EXPECT_NEAR(screw.value().per_slot[1] * slots, 0.008 * 33.3 / 200, 1e-15);
-  EXPECT_NEAR(screw.value().per_slot[0] * slots, 2 * kPi / 200, 1e-15);
+  EXPECT_NEAR(screw.value().per_slot[0] * slots, 2 * std::numbers::pi / 200, 1e-15);
   const Plan flat = scanner_plan(scanner_job(Mode::flat));
   EXPECT_NEAR(plan_geometry(flat).value().per_slot[1] * static_cast<double>(flat.line.slots), 0.008, 1e-12);
   for (const Plan& plan : {helical, flat}) {
@@ -105,7 +105,8 @@ TEST(PlanTrajectory, ReportsTheIncidenceOffTheTop) {
   const auto made = plan_trajectory(scanner_plan(job));
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_NEAR(made.value().quality.incidence_deg, 35, 0.5);
-  EXPECT_NEAR(made.value().path.geometry().centre_v_mm, -0.8 / kPi * std::sin(35 * kPi / 180), 1e-12);
+  EXPECT_NEAR(made.value().path.geometry().centre_v_mm, -0.8 / std::numbers::pi * std::sin(35 * std::numbers::pi / 180),
+              1e-12);
 }
 
 TEST(PlanTrajectory, UndoesTheGridOfThePlan) {

@@ -19,7 +19,7 @@ using emulator::EmulatedBoard;
 using emulator::EmulatedLink;
 using gravure::test::small_job;
 
-const JobIdentity kJob{"job.grv", "0123", 1'000, 100};
+const JobIdentity kLongJob{"job.grv", "0123", 1'000, 100};
 const BoardMemory kBoard{.serial = "A", .power_up = 7, .mark = 99, .executed_lines = 40, .closed_slot = 5};
 
 Attempt attempt() {
@@ -35,7 +35,7 @@ Attempt attempt() {
 class Resume : public testing::Test {
  protected:
   void SetUp() override {
-    Result<Journal> opened = Journal::open(folder_ / "j", kJob);
+    Result<Journal> opened = Journal::open(folder_ / "j", kLongJob);
     ASSERT_TRUE(opened);
     journal_.emplace(std::move(opened).value());
     ASSERT_TRUE(journal_->begin(attempt()));

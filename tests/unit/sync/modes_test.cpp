@@ -189,37 +189,38 @@ void PrintTo(const ModeRefusal& refusal, std::ostream* out) {
   *out << refusal.name;
 }
 
-constexpr ErrorCode kRange = ErrorCode::out_of_range;
-
-const ModeRefusal kRefusals[] = {
-    {"FeedOfZero", Mode::helical, [](Job& j) { j.carriage.feed_pixels = 0; }, kRange,
+const ModeRefusal kModeRefusals[] = {
+    {"FeedOfZero", Mode::helical, [](Job& j) { j.carriage.feed_pixels = 0; }, ErrorCode::out_of_range,
      "carriage.feed_pixels = 0: must be greater than 0"},
-    {"NoLayers", Mode::helical, [](Job& j) { j.carriage.layers = 0; }, kRange, "carriage.layers = 0: must be 1 to"},
+    {"NoLayers", Mode::helical, [](Job& j) { j.carriage.layers = 0; }, ErrorCode::out_of_range,
+     "carriage.layers = 0: must be 1 to"},
     {"OtherLayers", Mode::helical, [](Job& j) { j.carriage.layers = 7; }, ErrorCode::bad_argument,
      "carriage.layers = 7: there are 8 layers in [image], and one is needed for each: set carriage.layers = 8"},
-    {"WindowWiderThanTheField", Mode::helical, [](Job& j) { j.scanner.field_mm = 4; }, kRange,
+    {"WindowWiderThanTheField", Mode::helical, [](Job& j) { j.scanner.field_mm = 4; }, ErrorCode::out_of_range,
      "carriage.feed_pixels = 64: a window of carriage.layers * feed_pixels = 512 columns does not fit scanner.field_mm "
      "= 4; at most 62.5 fit with these layers"},
-    {"TooManyTurns", Mode::helical, [](Job& j) { j.carriage.feed_pixels = ratio(1, 100); }, kRange,
+    {"TooManyTurns", Mode::helical, [](Job& j) { j.carriage.feed_pixels = ratio(1, 100); }, ErrorCode::out_of_range,
      "carriage.feed_pixels = 0.01: the job takes 1500008 revolutions; at most 1000000 fit"},
     {"EndlessFeed", Mode::helical,
-     [](Job& j) { j.carriage.feed_pixels = ratio((Integer(64) << 70) + 1, Integer(1) << 70); }, kRange,
+     [](Job& j) { j.carriage.feed_pixels = ratio((Integer(64) << 70) + 1, Integer(1) << 70); }, ErrorCode::out_of_range,
      "is a ratio beyond 62-bit integers; give it with fewer digits"},
-    {"CarriagePitchOfZero", Mode::helical, [](Job& j) { j.carriage.encoder_pitch_um = 0; }, kRange,
+    {"CarriagePitchOfZero", Mode::helical, [](Job& j) { j.carriage.encoder_pitch_um = 0; }, ErrorCode::out_of_range,
      "carriage.encoder_pitch_um = 0: must be greater than 0"},
-    {"CarriageTooFast", Mode::helical, [](Job& j) { j.carriage.max_ab_hz = 100; }, kRange,
+    {"CarriageTooFast", Mode::helical, [](Job& j) { j.carriage.max_ab_hz = 100; }, ErrorCode::out_of_range,
      "carriage.interpolation_bits = 8: needs an A-B signal of 517.7157"},
-    {"StageWithoutLines", Mode::flat, [](Job& j) { j.stage.lines = 0; }, kRange, "stage.lines = 0: must be 1 to"},
-    {"StagePitchOfZero", Mode::flat, [](Job& j) { j.stage.line_pitch_um = 0; }, kRange, "stage.line_pitch_um = 0"},
-    {"StageTooFast", Mode::flat, [](Job& j) { j.stage.max_ab_hz = 1000; }, kRange,
+    {"StageWithoutLines", Mode::flat, [](Job& j) { j.stage.lines = 0; }, ErrorCode::out_of_range,
+     "stage.lines = 0: must be 1 to"},
+    {"StagePitchOfZero", Mode::flat, [](Job& j) { j.stage.line_pitch_um = 0; }, ErrorCode::out_of_range,
+     "stage.line_pitch_um = 0"},
+    {"StageTooFast", Mode::flat, [](Job& j) { j.stage.max_ab_hz = 1000; }, ErrorCode::out_of_range,
      "a stage.encoder_pitch_um of at least "},
     {"StageTooLong", Mode::flat,
      [](Job& j) {
        j.stage.lines = 1'000'000'000;
        j.laser.pulse_divider = 65'535;
      },
-     kRange, "stage.lines = 1000000000: a pass takes ", 1'000'000},
-    {"FieldOfNoPixel", Mode::flat, [](Job& j) { j.scanner.field_mm = ratio(7, 1000); }, kRange,
+     ErrorCode::out_of_range, "stage.lines = 1000000000: a pass takes ", 1'000'000},
+    {"FieldOfNoPixel", Mode::flat, [](Job& j) { j.scanner.field_mm = ratio(7, 1000); }, ErrorCode::out_of_range,
      "scanner.field_mm = 0.007: holds no pixel of scanner.pixel_pitch_um = 8; at least 0.008 mm would"},
 };
 
@@ -236,7 +237,7 @@ TEST_P(ModeRefused, SaysTheKeyTheValueAndWhatFits) {
   EXPECT_EQ(plan.error().message.find('\n'), std::string::npos) << plan.error().message;
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, ModeRefused, testing::ValuesIn(kRefusals),
+INSTANTIATE_TEST_SUITE_P(Modes, ModeRefused, testing::ValuesIn(kModeRefusals),
                          [](const auto& its) { return its.param.name; });
 
 TEST(ModeWarnings, NameTheAxisTheyAreAbout) {

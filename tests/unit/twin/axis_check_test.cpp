@@ -10,7 +10,7 @@ namespace gravure::test {
 namespace {
 
 /// A random job that can be planned.
-Job random_job(Dice& dice) {
+Job random_axis_job(Dice& dice) {
   Job job = small_job(dice.between(1, 5000));
   job.laser.pulse_divider = dice.between(10, 60);
   job.fpga.clock_multiplier = dice.between(1, 3);
@@ -32,7 +32,7 @@ void for_random_plans(Check&& check) {
   Dice dice;
   int plans = 0;
   for (int trial = 0; trial < 2000 && plans < 150; ++trial) {
-    const Result<Plan> plan = make_plan(random_job(dice), dice.between(1, 4000), dice.between(1, 1000));
+    const Result<Plan> plan = make_plan(random_axis_job(dice), dice.between(1, 4000), dice.between(1, 1000));
     if (plan) {
       ++plans;
       check(plan.value(), dice);

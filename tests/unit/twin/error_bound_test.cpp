@@ -13,7 +13,7 @@ namespace {
 /// No bound is more than so many times what the worst pulse of a job does (docs/error_budget.md).
 constexpr double kBoundFactor = 2;
 
-Job random_job(Dice& dice) {
+Job random_small_job(Dice& dice) {
   const std::int64_t lines = dice.between(4, 90);
   Job job = small_job(lines);
   job.mode = static_cast<Mode>(dice.between(0, 2));
@@ -109,7 +109,7 @@ TEST(ErrorBound, HoldsEveryPulseAndIsWithinItsFactorForEachTermAndForAll) {
   std::map<std::size_t, double> widest;
   for (int trial = 0; trial < 400 && (plans[Mode::rotary] < 12 || plans[Mode::helical] < 12 || plans[Mode::flat] < 12);
        ++trial) {
-    const Job job = random_job(dice);
+    const Job job = random_small_job(dice);
     const std::int64_t exposures = job.mode == Mode::helical ? job.carriage.layers : dice.between(1, 5);
     const Result<Plan> made = make_plan(job, dice.between(20, 80), exposures);
     if (!made || plans[job.mode] >= 12) {

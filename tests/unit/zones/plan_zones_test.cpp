@@ -10,12 +10,10 @@
 namespace gravure::zones {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
-
 ZonePlanRequest core_request() {
   ZonePlanRequest request;
   request.contours = test::CeramicCore::contours();
-  request.max_incidence_rad = 5 * kRadians;
+  request.max_incidence_rad = 5 * std::numbers::pi / 180;
   request.max_layer_mm = 0.3;
   request.machine = example_machine();
   return request;
