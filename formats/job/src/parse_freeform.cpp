@@ -117,7 +117,7 @@ Result<FreeformJob> parse_freeform_job(std::string_view text, const std::string&
     return Error{ErrorCode::bad_file, path + ": " + std::to_string(text.size()) + " bytes: a job file has at most " +
                                           std::to_string(kMaxJobBytes)};
   }
-  const auto parsed = parse_toml(text, parent_names());
+  const auto parsed = parse_toml(text, freeform_file::parent_names());
   if (const auto* syntax = std::get_if<SyntaxError>(&parsed)) {
     return Error{ErrorCode::bad_argument, place(path, syntax->at) + "not TOML: " + syntax->message};
   }

@@ -8,11 +8,12 @@
 
 #include "gravure/formats/job_file.hpp"
 #include "markdown_table.hpp"
+#include "sample_job.hpp"
 
 namespace gravure {
 namespace {
 
-std::string document() {
+std::string freeform_page() {
   std::ifstream file(GRAVURE_FREEFORM_DOC, std::ios::binary);
   EXPECT_TRUE(file) << GRAVURE_FREEFORM_DOC;
   std::ostringstream text;
@@ -28,19 +29,10 @@ std::string starter_with(const std::string& from, const std::string& to) {
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-/// "line:column" of the first `piece`.
-std::string place_of(const std::string& text, const std::string& piece) {
-  const std::size_t at = text.find(piece);
-  EXPECT_NE(at, std::string::npos) << piece;
-  const std::string before = text.substr(0, at);
-  const std::size_t line_start = before.rfind('\n') + 1;
-  return std::to_string(std::count(before.begin(), before.end(), '\n') + 1) + ":" + std::to_string(at - line_start + 1);
-}
-
 TEST(FreeformDocument, HasTheReadersKeysAndNoOthers) {
   const std::vector<JobKey> known = freeform_job_keys();
   std::size_t i = 0;
-  std::istringstream stream(document());
+  std::istringstream stream(freeform_page());
   for (std::string line; std::getline(stream, line);) {
     if (line.rfind("| `[", 0) != 0) {
       continue;
@@ -61,7 +53,7 @@ TEST(FreeformDocument, HasTheReadersKeysAndNoOthers) {
 }
 
 TEST(FreeformDocument, ShowsJobsThatParse) {
-  const std::string text = document();
+  const std::string text = freeform_page();
   int examples = 0;
   std::size_t end = 0;
   for (std::size_t at = text.find("```toml\n"); at != std::string::npos; at = text.find("```toml\n", end)) {
@@ -188,51 +180,52 @@ TEST_P(FreeformRefusal, NamesPlaceKeyValueAndRange) {
   EXPECT_EQ(job.error().message, "dir/job.toml:" + place_of(text, wrong.at) + ": " + wrong.says);
 }
 
-constexpr ErrorCode kBad = ErrorCode::bad_argument;
-constexpr ErrorCode kRange = ErrorCode::out_of_range;
+constexpr ErrorCode kNotSo = ErrorCode::bad_argument;
+constexpr ErrorCode kOutside = ErrorCode::out_of_range;
 
 const Wrong kWrongs[] = {
-    {"MisspeltKey", "pitch_um  ", "ptich_um  ", kBad, "ptich_um",
+    {"MisspeltKey", "pitch_um  ", "ptich_um  ", kNotSo, "ptich_um",
      "[texture] ptich_um = 50: unknown key; did you mean pitch_um?"},
-    {"KeyOfAnotherSection", "[split]", "[split]\nfod_um = 3", kBad, "fod_um = 3",
+    {"KeyOfAnotherSection", "[split]", "[split]\nfod_um = 3", kNotSo, "fod_um = 3",
      "[split] fod_um = 3: unknown key; it belongs in [limits]"},
-    {"MisspeltSection", "[split]", "[spilt]\n[split]", kBad, "[spilt]",
+    {"MisspeltSection", "[split]", "[spilt]\n[split]", kNotSo, "[spilt]",
      "[spilt]: unknown section; did you mean [split]?"},
-    {"AxisOfNoMachine", "[axis.X]", "[axis.B]", kBad, "[axis.B]", "[axis.B]: unknown section; did you mean [axis.X]?"},
-    {"DegreesOfALinearAxis", "max_speed_mm_s ", "max_speed_deg_s", kBad, "max_speed_deg_s",
+    {"AxisOfNoMachine", "[axis.X]", "[axis.B]", kNotSo, "[axis.B]",
+     "[axis.B]: unknown section; did you mean [axis.X]?"},
+    {"DegreesOfALinearAxis", "max_speed_mm_s ", "max_speed_deg_s", kNotSo, "max_speed_deg_s",
      "[axis.X] max_speed_deg_s = 100: unknown key; it belongs in [axis.A]"},
-    {"SizeOutOfRange", "pitch_um      = 50 ", "pitch_um      = -7 ", kRange, "-7 ",
+    {"SizeOutOfRange", "pitch_um      = 50 ", "pitch_um      = -7 ", kOutside, "-7 ",
      "[texture] pitch_um = -7: must be a number from 0.000_001 to 1_000_000_000 um"},
-    {"DivisorBeyondItsBits", "pulse_divider = 41 ", "pulse_divider = 65_536 ", kRange, "65_536",
+    {"DivisorBeyondItsBits", "pulse_divider = 41 ", "pulse_divider = 65_536 ", kOutside, "65_536",
      "[laser] pulse_divider = 65_536: must be an integer from 1 to 65_535 seed pulses"},
-    {"WordOfNoMethod", "\"gaussian\"", "\"gausian\"", kBad, "\"gausian\"",
+    {"WordOfNoMethod", "\"gaussian\"", "\"gausian\"", kNotSo, "\"gausian\"",
      "[split] method = \"gausian\": must be \"gaussian\", \"savitzky-golay\", \"fft\", \"adaptive\" or \"optimal\"; "
      "did "
      "you mean \"gaussian\"?"},
-    {"NoSurface", "expression    = \"0.02*x*y\"", "", kBad, "[surface]",
+    {"NoSurface", "expression    = \"0.02*x*y\"", "", kNotSo, "[surface]",
      "[surface] expression, height_field or mesh is missing: give one of them"},
-    {"TwoSurfaces", "max_slope_deg = 60", "mesh = \"a.stl\"", kBad, "mesh = \"a.stl\"",
+    {"TwoSurfaces", "max_slope_deg = 60", "mesh = \"a.stl\"", kNotSo, "mesh = \"a.stl\"",
      "[surface] mesh = \"a.stl\": contradicts expression = \"0.02*x*y\" (line 22); give one of expression, "
      "height_field or mesh"},
-    {"HeightFieldWithoutPixels", "expression    = \"0.02*x*y\"", "height_field = \"a.tif\"", kBad, "[surface]",
+    {"HeightFieldWithoutPixels", "expression    = \"0.02*x*y\"", "height_field = \"a.tif\"", kNotSo, "[surface]",
      "[surface] pixel_um is missing: height_field needs a number from 0.000_001 to 1_000_000_000 um"},
-    {"PixelsOfAnExpression", "max_slope_deg = 60", "pixel_um = 5", kBad, "pixel_um = 5",
+    {"PixelsOfAnExpression", "max_slope_deg = 60", "pixel_um = 5", kNotSo, "pixel_um = 5",
      "[surface] pixel_um = 5: has a meaning only with height_field; take it out"},
-    {"BitmapWithoutPolarity", "fires         = \"white\"", "", kBad, "[texture]",
+    {"BitmapWithoutPolarity", "fires         = \"white\"", "", kNotSo, "[texture]",
      "[texture] fires is missing: bitmap needs \"white\" or \"black\""},
-    {"SizeOfABitmap", "pitch_um      = 50 ", "pitch_um      = 50\nsize_mm = 3 ", kBad, "size_mm",
+    {"SizeOfABitmap", "pitch_um      = 50 ", "pitch_um      = 50\nsize_mm = 3 ", kNotSo, "size_mm",
      "[texture] size_mm = 3: has a meaning only with hilbert_order; take it out"},
-    {"RuleWithSigma", "rule   = \"time\"", "sigma_um = 5000\nrule   = \"time\"", kBad, "rule   = \"time\"",
+    {"RuleWithSigma", "rule   = \"time\"", "sigma_um = 5000\nrule   = \"time\"", kNotSo, "rule   = \"time\"",
      "[split] rule = \"time\": has no meaning with sigma_um (line 34); take one of them out"},
-    {"OriginOfTwo", "[motion]", "[clamping]\norigin_mm = [1, 2]\n[motion]", kBad, "[1, 2]",
+    {"OriginOfTwo", "[motion]", "[clamping]\norigin_mm = [1, 2]\n[motion]", kNotSo, "[1, 2]",
      "[clamping] origin_mm = [1, 2]: must be [x, y, z], three numbers from -1_000_000 to 1_000_000 mm"},
-    {"TiltBeyondATurn", "[motion]", "[clamping]\ntilt_deg = [0, 190]\n[motion]", kRange, "190",
+    {"TiltBeyondATurn", "[motion]", "[clamping]\ntilt_deg = [0, 190]\n[motion]", kOutside, "190",
      "[clamping] tilt_deg = [0, 190]: must be [first, second], two numbers from -180 to 180 deg"},
-    {"NoClock", "clock_multiplier = 2 ", "", kBad, "[fpga]",
+    {"NoClock", "clock_multiplier = 2 ", "", kNotSo, "[fpga]",
      "[fpga] clock_multiplier is missing: give an integer from 1 to 16 FPGA ticks per seed pulse"},
-    {"ModeOfOthers", "\"freeform\"", "\"flat\"", kBad, "\"flat\"",
+    {"ModeOfOthers", "\"freeform\"", "\"flat\"", kNotSo, "\"flat\"",
      "[job] mode = \"flat\": must be \"freeform\"; the nearest known one is \"freeform\""},
-    {"LooseKey", "[job]", "mode = 3\n[job]", kBad, "mode = 3",
+    {"LooseKey", "[job]", "mode = 3\n[job]", kNotSo, "mode = 3",
      "mode = 3: unknown key outside every section; it belongs in [job]"},
 };
 std::string wrong_name(const testing::TestParamInfo<Wrong>& info) {
