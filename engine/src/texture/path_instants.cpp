@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "run_motion.hpp"
 
@@ -24,17 +25,25 @@ class RunCursor {
     if (moved) {
       motion_ = RunMotion(path_, run());
     }
-    run_mm_ = motion_.at(std::max<std::int64_t>(period - run().start, 0));
+    place_ = PathRuns::place(run(), motion_.at(std::max<std::int64_t>(period - run().start, 0)));
   }
   const PathRun& run() const { return path_.runs()[run_]; }
-  double run_mm() const { return run_mm_; }
-  Place place() const { return PathRuns::place(run(), run_mm_); }
+  const Place& place() const { return place_; }
+  Vector3 position() {
+    if (!segment_ || place_.index != segment_of_) {
+      segment_ = path_.segment(place_.index);
+      segment_of_ = place_.index;
+    }
+    return segment_->position(place_.share);
+  }
 
  private:
   const PathRuns& path_;
   std::size_t run_;
   RunMotion motion_;
-  double run_mm_ = 0;
+  Place place_;
+  std::optional<SpotSegment> segment_;
+  std::size_t segment_of_ = 0;
 };
 
 double between(const std::vector<double>& values, const Place& place) {
@@ -68,7 +77,7 @@ Result<void> SevenAxisMotion::read(std::int64_t first, std::span<PathInstant> ou
     const std::int64_t period = first + static_cast<std::int64_t>(k) - lead();
     cursor.go_to(period);
     const StageValues stages = stages_.at(place_.at(period));
-    const Vector3 spot = table_.turned(stages[3], stages[4], path_.position(cursor.run(), cursor.run_mm()));
+    const Vector3 spot = table_.turned(stages[3], stages[4], cursor.position());
     PathInstant& at = out[k];
     std::copy(stages.begin(), stages.end(), at.axes.begin());
     at.axes[5] = spot.x() - stages[0];

@@ -29,19 +29,63 @@ PathRuns::PathRuns(std::vector<SurfacePoint> targets, std::span<const std::size_
   }
 }
 
-motion::Profile PathRuns::profile(const PathRun& run) const {
+namespace {
+
+motion::Profile shortest(const PathRun& run) {
   motion::JerkRequest request;
   request.move = {run.length_mm, run.caps.speed, run.caps.acceleration, run.caps.acceleration};
   request.jerk_up_mm_s3 = run.caps.jerk;
   request.jerk_down_mm_s3 = run.caps.jerk;
   const Result<motion::Profile> planned = motion::plan_profile(request);
-  if (!planned || planned.value().access_time_s() <= 0) {
+  return planned && planned.value().access_time_s() > 0 ? planned.value() : motion::Profile();
+}
+
+}  // namespace
+
+void PathRuns::cap(PathRun& run, const AxisBounds& caps) {
+  run.caps = caps;
+  const motion::Profile profile = shortest(run);
+  run.shortest_s = profile.access_time_s();
+  run.shortest_speed = profile.peak_velocity_mm_s;
+  run.shortest_acceleration = profile.peak_acceleration_up_mm_s2;
+}
+
+std::int64_t PathRuns::profile_periods(const PathRun& run) const noexcept {
+  constexpr double kSame = 1e-9;  // of a period: what rounding may add
+  const double periods = std::ceil(run.shortest_s * run.stretch / period_s_ - kSame);
+  return run.shortest_s > 0 ? std::max<std::int64_t>(1, static_cast<std::int64_t>(periods)) : 0;
+}
+
+motion::Profile PathRuns::profile(const PathRun& run) const {
+  if (run.shortest_s <= 0) {
     return {};
   }
-  const double time_s = planned.value().access_time_s() * run.stretch;
-  constexpr double kSame = 1e-9;  // of a period: what rounding may add
-  const double periods = std::max(1.0, std::ceil(time_s / period_s_ - kSame));
-  return motion::slow_down(planned.value(), std::max(1.0, periods * period_s_ / planned.value().access_time_s()));
+  const auto periods = static_cast<double>(profile_periods(run));
+  return motion::slow_down(shortest(run), std::max(1.0, periods * period_s_ / run.shortest_s));
+}
+
+double PathRuns::peak_speed(const PathRun& run) const noexcept {
+  if (!run.fed()) {
+    return run.shortest_speed / std::max(1.0, static_cast<double>(run.periods) * period_s_ / run.shortest_s);
+  }
+  double most = 0;
+  for (std::int64_t k = 0; k <= static_cast<std::int64_t>(run.feed_mm.size()); ++k) {
+    most = std::max(most, run.control(k + 1) - run.control(k));
+  }
+  return most / (static_cast<double>(knot_) * period_s_);
+}
+
+double PathRuns::peak_acceleration(const PathRun& run) const noexcept {
+  if (!run.fed()) {
+    const double slower = std::max(1.0, static_cast<double>(run.periods) * period_s_ / run.shortest_s);
+    return run.shortest_acceleration / (slower * slower);
+  }
+  double most = 0;
+  for (std::int64_t k = 0; k <= static_cast<std::int64_t>(run.feed_mm.size()) + 1; ++k) {
+    most = std::max(most, std::abs(run.control(k + 1) - 2 * run.control(k) + run.control(k - 1)));
+  }
+  const double knot_s = static_cast<double>(knot_) * period_s_;
+  return most / (knot_s * knot_s);
 }
 
 void PathRuns::set_knot(std::int64_t periods) {
@@ -57,8 +101,7 @@ void PathRuns::schedule() {
   for (PathRun& run : runs_) {
     run.start = start;
     // A feed sets out one knot before its first control point moves on, and ends one after the last.
-    run.periods = run.fed() ? (static_cast<std::int64_t>(run.feed_mm.size()) + 3) * knot_
-                            : std::llround(profile(run).access_time_s() / period_s_);
+    run.periods = run.fed() ? (static_cast<std::int64_t>(run.feed_mm.size()) + 3) * knot_ : profile_periods(run);
     start += run.periods;
   }
 }
@@ -76,37 +119,32 @@ Place PathRuns::place(const PathRun& run, double run_mm) noexcept {
   return {run.first + k, in_run - static_cast<double>(k)};
 }
 
-Vector3 PathRuns::position(const PathRun& run, double run_mm) const noexcept {
-  return spot(run, run_mm).position_mm;
+SpotSegment::SpotSegment(const SurfacePoint& from, const SurfacePoint& to)
+    : from_(from.position_mm), step_(to.position_mm - from.position_mm) {
+  // Hermite: the chord, and what leaves it with the slopes of both ends.
+  const Vector2 way = step_.head<2>();
+  left_ = slope(from, way) - step_.z();
+  right_ = slope(to, way) - step_.z();
+}
+
+SpotState SpotSegment::state(double share) const noexcept {
+  SpotState state;
+  state.position_mm = position(share);
+  const double length = step_.head<2>().norm();
+  if (length > 0) {
+    const double u = share;
+    const double w = 1 - u;
+    const double off_first = w * (1 - 3 * u) * left_ - u * (2 - 3 * u) * right_;
+    const double off_second = (6 * u - 4) * left_ - (2 - 6 * u) * right_;
+    state.tangent = Vector3(step_.x(), step_.y(), step_.z() + off_first) / length;
+    state.bend_per_mm = off_second / (length * length);
+  }
+  return state;
 }
 
 SpotState PathRuns::spot(const PathRun& run, double run_mm) const noexcept {
   const Place at = place(run, run_mm);
-  const double u = at.share;
-  const SurfacePoint& a = targets_[at.index];
-  const SurfacePoint& b = targets_[at.index + 1];
-  const Vector3 step = b.position_mm - a.position_mm;
-  const double length = step.head<2>().norm();
-  SpotState state;
-  if (length <= 0) {
-    state.position_mm = b.position_mm;
-    return state;
-  }
-  const Vector2 along = step.head<2>() / length;
-  const double from = slope(a, along) * length;
-  const double to = slope(b, along) * length;
-  // Hermite: the chord, and what leaves it with the slopes of both ends.
-  const double left = from - step.z();
-  const double right = to - step.z();
-  const double w = 1 - u;
-  const double off = u * w * (w * left - u * right);
-  const double off_first = w * (1 - 3 * u) * left - u * (2 - 3 * u) * right;
-  const double off_second = (6 * u - 4) * left - (2 - 6 * u) * right;
-  state.position_mm = a.position_mm + u * step;
-  state.position_mm.z() += off;
-  state.tangent = Vector3(along.x(), along.y(), (step.z() + off_first) / length);
-  state.bend_per_mm = off_second / (length * length);
-  return state;
+  return segment(at.index).state(at.share);
 }
 
 std::vector<double> mean_places(const PathRuns& path, std::int64_t cell) {
@@ -117,7 +155,6 @@ std::vector<double> mean_places(const PathRuns& path, std::int64_t cell) {
   std::vector<double> means;
   means.reserve(static_cast<std::size_t>(cells));
   std::size_t r = 0;
-  RunMotion motion(path, runs[0]);
   // Half periods, so that odd cells have whole ends too.
   for (std::int64_t k = 0; k < cells; ++k) {
     const std::int64_t from2 = (2 * k - 1) * cell;
@@ -134,14 +171,17 @@ std::vector<double> mean_places(const PathRuns& path, std::int64_t cell) {
       const std::int64_t b = std::min(to2, end2);
       if (b > a && runs[r].length_mm > 0) {
         const auto in_run = [&](std::int64_t half) { return static_cast<double>(half - start2) / 2; };
-        const double moved = motion.travelled(in_run(a), in_run(b)) * 2 / h;
+        // A whole profile is as long before its middle as behind it.
+        const bool whole = a == start2 && b == end2 && !runs[r].fed();
+        const double moved = whole ? static_cast<double>(b - a) * runs[r].length_mm / 2
+                                   : RunMotion(path, runs[r]).travelled(in_run(a), in_run(b)) * 2 / h;
         sum += static_cast<double>(b - a) * (static_cast<double>(runs[r].first) - base) +
                moved * static_cast<double>(runs[r].count) / runs[r].length_mm;
       }
       if (end2 >= to2 || r + 1 == runs.size()) {
         break;
       }
-      motion = RunMotion(path, runs[++r]);
+      ++r;
     }
     const std::int64_t end2 = 2 * path.periods();
     if (to2 > end2) {

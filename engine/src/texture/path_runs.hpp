@@ -24,6 +24,16 @@ struct PathRun {
   /// Where the spot is every knot, but for both ends: control points of a cubic spline. Empty: a profile.
   std::vector<double> feed_mm = {};
 
+  /// Of the shortest move under the caps: how long it takes, and its peaks (mm/s, mm/s^2). Set with the caps.
+  double shortest_s = 0;
+  double shortest_speed = 0;
+  double shortest_acceleration = 0;
+
+  /// Control point k of the feed, which is passed about k + 1 knots after the start.
+  double control(std::int64_t k) const noexcept {
+    const auto inner = static_cast<std::int64_t>(feed_mm.size());
+    return k <= 0 ? 0 : k > inner ? length_mm : feed_mm[static_cast<std::size_t>(k - 1)];
+  }
   bool fed() const noexcept { return !feed_mm.empty(); }
   /// Over so many segments that one hard place must not slow all of them.
   bool is_long() const noexcept { return count >= 8; }
@@ -34,6 +44,26 @@ struct SpotState {
   Vector3 position_mm = Vector3::Zero();
   Vector3 tangent = Vector3::UnitX();  ///< by the length run in the plane
   double bend_per_mm = 0;              ///< of z, second derivative by that length
+};
+
+/// The way from a point to the next: straight in the plane, z by the cubic that meets the normals.
+class SpotSegment {
+ public:
+  SpotSegment() = default;
+  SpotSegment(const SurfacePoint& from, const SurfacePoint& to);
+  Vector3 position(double share) const noexcept {
+    const double rest = 1 - share;
+    Vector3 at = from_ + share * step_;
+    at.z() += share * rest * (rest * left_ - share * right_);
+    return at;
+  }
+  SpotState state(double share) const noexcept;
+
+ private:
+  Vector3 from_ = Vector3::Zero();
+  Vector3 step_ = Vector3::Zero();
+  double left_ = 0;   ///< how much steeper than the chord z begins, over the segment
+  double right_ = 0;  ///< and ends
 };
 
 /// The moves of a path and their times.
@@ -57,19 +87,23 @@ class PathRuns {
     return knot_weights_[static_cast<std::size_t>(phase)];
   }
 
+  /// Sets caps of a run and what follows from them.
+  static void cap(PathRun& run, const AxisBounds& caps);
   /// The shortest move under the caps, stretched, then to whole periods; of runs that are not fed.
   motion::Profile profile(const PathRun& run) const;
+  double peak_speed(const PathRun& run) const noexcept;         ///< mm/s
+  double peak_acceleration(const PathRun& run) const noexcept;  ///< mm/s^2
   /// Sets periods and start of every run.
   void schedule();
   /// The run that period `period` falls into; at the end of one the next.
   std::size_t run_at(std::int64_t period) const noexcept;
   /// Where the spot is after `run_mm` of a run.
   static Place place(const PathRun& run, double run_mm) noexcept;
-  /// Points are joined straight in the plane; z by cubics that meet the normals.
-  Vector3 position(const PathRun& run, double run_mm) const noexcept;
+  SpotSegment segment(std::size_t index) const { return {targets_[index], targets_[index + 1]}; }
   SpotState spot(const PathRun& run, double run_mm) const noexcept;
 
  private:
+  std::int64_t profile_periods(const PathRun& run) const noexcept;
   std::vector<SurfacePoint> targets_;
   std::vector<PathRun> runs_;
   double period_s_ = 0;

@@ -38,7 +38,7 @@ Result<TimedPath> time_seven_axes(const PathTimingRequest& request, const Cancel
 
 Result<ProvenPath> prove_seven_axes(const PathTimingRequest& request, const CancelToken& cancel) {
   constexpr int kMostProofs = 12;
-  constexpr std::size_t kMostBreaches = 1'000'000;
+  constexpr int kThreads = 2;  // SevenAxisMotion only looks things up
   GRAVURE_CHECK(check_request(request));
   SevenAxisPlanner planner(request);
   ProvenPath proven;
@@ -46,17 +46,19 @@ Result<ProvenPath> prove_seven_axes(const PathTimingRequest& request, const Canc
     GRAVURE_CHECK(planner.settle(cancel));
     proven.path = planner.timed();
     ++proven.proofs;
-    std::vector<LimitUse> breaches;
-    GRAVURE_TRY(proven.uses, prove_limits(*proven.path.motion, request.limits, request.servo_s, cancel,
-                                          [&breaches](const LimitUse& breach) {
-                                            if (breaches.size() < kMostBreaches) {
-                                              breaches.push_back(breach);
-                                            }
-                                          }));
-    if (breaches.empty() || proven.proofs == kMostProofs) {
+    Needs needs = planner.needs();
+    bool breached = false;
+    GRAVURE_TRY(proven.uses, prove_limits(
+                                 *proven.path.motion, request.limits, request.servo_s, cancel,
+                                 [&](const LimitUse& breach) {
+                                   breached = true;
+                                   planner.note(breach, needs);
+                                 },
+                                 kThreads));
+    if (!breached || proven.proofs == kMostProofs) {
       return proven;
     }
-    planner.lower(breaches);
+    planner.lower(needs);
   }
 }
 

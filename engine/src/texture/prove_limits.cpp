@@ -1,7 +1,11 @@
 #include "gravure/texture/prove_limits.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <future>
+#include <mutex>
 
 #include "gravure/core/path_expand.hpp"
 #include "motion_windows.hpp"
@@ -28,6 +32,50 @@ std::array<double, kKinds> extremes(const std::array<double, 4>& x) {
   return {speed, std::max(std::abs(before), std::abs(after)), std::abs(jerk)};
 }
 
+using AllAxes = Eigen::Array<double, kPathAxes.size() + 1, 1>;  // and the way covered: eight go in pairs
+
+AllAxes all_axes(const PathInstant& at) {
+  static_assert(sizeof(PathInstant) == sizeof(AllAxes));
+  AllAxes all;
+  std::memcpy(all.data(), &at, sizeof(at));
+  return all;
+}
+
+/// The extremes of a whole block, all axes at once; finite only where every axis is.
+struct BlockExtremes {
+  std::array<AllAxes, kKinds> most{AllAxes::Zero(), AllAxes::Zero(), AllAxes::Zero()};
+  bool finite = true;
+};
+
+BlockExtremes block_extremes(std::span<const PathInstant> block) {
+  BlockExtremes found;
+  AllAxes speed = AllAxes::Zero();
+  AllAxes acceleration = AllAxes::Zero();
+  AllAxes jerk = AllAxes::Zero();
+  AllAxes sum = AllAxes::Zero();
+  AllAxes here = all_axes(block[2]);
+  AllAxes first = here - all_axes(block[1]);
+  AllAxes before = first - (all_axes(block[1]) - all_axes(block[0]));
+  for (std::size_t k = 3; k < block.size(); ++k) {
+    const AllAxes next = all_axes(block[k]);
+    const AllAxes after = (next - here) - first;
+    const AllAxes change = after - before;
+    const AllAxes begin = first - before / 2 - change / 6;
+    const AllAxes turn = begin - before * before / (2 * change);  // where the acceleration is 0
+    speed = speed.max(begin.abs()).max((first + before / 2 + change / 3).abs());
+    speed = speed.max((before * after < 0).select(turn.abs(), speed));
+    acceleration = acceleration.max(after.abs()).max(before.abs());
+    jerk = jerk.max(change.abs());
+    sum += change;
+    first = next - here;
+    here = next;
+    before = after;
+  }
+  found.most = {speed, acceleration, jerk};
+  found.finite = sum.isFinite().all();
+  return found;
+}
+
 class Uses {
  public:
   Uses(const SevenLimits& limits, double servo_s, const LimitBreach& breach) : breach_(breach) {
@@ -43,7 +91,35 @@ class Uses {
       }
     }
   }
-  void look(std::span<const PathInstant> four, std::int64_t instant) {
+  /// Looks into a block only where it holds more than is known, or than is allowed.
+  void look(std::span<const PathInstant> block, std::int64_t begin) {
+    if (block.size() < 4) {
+      return;
+    }
+    const BlockExtremes found = block_extremes(block);
+    constexpr double kSure = 1 + 1e-12;  // the sums above are done in another order
+    bool more = !found.finite;
+    for (std::size_t k = 0; k < uses_.size(); ++k) {
+      const auto axis = static_cast<Eigen::Index>(uses_[k].axis);
+      const double most = found.most[k % kKinds][axis] * per_unit_[k % kKinds] * kSure;
+      more = more || !(most <= std::min(uses_[k].most, uses_[k].allowed));
+    }
+    for (std::size_t k = 0; more && k + 3 < block.size(); ++k) {
+      look_at(block.subspan(k, 4), begin + static_cast<std::int64_t>(k));
+    }
+  }
+  std::vector<LimitUse> uses() const { return {uses_.begin(), uses_.end()}; }
+  /// What a later part of the same motion has found.
+  void join(const Uses& later) {
+    for (std::size_t k = 0; k < uses_.size(); ++k) {
+      if (!(later.uses_[k].most <= uses_[k].most)) {
+        uses_[k] = later.uses_[k];
+      }
+    }
+  }
+
+ private:
+  void look_at(std::span<const PathInstant> four, std::int64_t instant) {
     for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
       const std::array<double, 4> x{four[0].axes[axis], four[1].axes[axis], four[2].axes[axis], four[3].axes[axis]};
       const std::array<double, kKinds> most = extremes(x);
@@ -52,9 +128,6 @@ class Uses {
       }
     }
   }
-  std::vector<LimitUse> uses() const { return {uses_.begin(), uses_.end()}; }
-
- private:
   void note(LimitUse& use, double value, std::int64_t instant) const {
     if (breach_ && value > use.allowed * (1 + kRounding)) {
       breach_({use.axis, use.kind, value, use.allowed, instant});
@@ -104,12 +177,38 @@ std::string_view source_name(LimitSource source) noexcept {
 }
 
 Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const SevenLimits& limits, double servo_s,
-                                           const CancelToken& cancel, const LimitBreach& breach) {
-  Uses uses(limits, servo_s, breach);
-  GRAVURE_CHECK(for_each_window(
-      motion, cancel, "stopped while limits were being checked",
-      [&uses](std::span<const PathInstant, 4> four, std::int64_t instant) { uses.look(four, instant); }));
-  return uses.uses();
+                                           const CancelToken& cancel, const LimitBreach& breach, int threads) {
+  std::mutex one_at_a_time;
+  LimitBreach told;
+  if (breach) {
+    told = [&](const LimitUse& use) {
+      const std::lock_guard lock(one_at_a_time);
+      breach(use);
+    };
+  }
+  const std::int64_t periods = std::max<std::int64_t>(motion.instants() - 1, 0);
+  const std::int64_t parts = std::clamp<std::int64_t>(threads, 1, 64);
+  std::vector<Uses> uses(static_cast<std::size_t>(parts), Uses(limits, servo_s, told));
+  const auto prove_part = [&](std::int64_t part) {
+    Uses& mine = uses[static_cast<std::size_t>(part)];
+    return for_each_block(motion, {periods * part / parts, periods * (part + 1) / parts}, cancel,
+                          "stopped while limits were being checked",
+                          [&mine](std::span<const PathInstant> block, std::int64_t begin) { mine.look(block, begin); });
+  };
+  std::vector<std::future<Result<void>>> others;
+  for (std::int64_t part = 1; part < parts; ++part) {
+    others.push_back(std::async(std::launch::async, prove_part, part));
+  }
+  Result<void> outcome = prove_part(0);
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    Result<void> other = others[k].get();
+    if (outcome) {
+      outcome = std::move(other);
+    }
+    uses[0].join(uses[k + 1]);
+  }
+  GRAVURE_CHECK(outcome);
+  return uses[0].uses();
 }
 
 std::vector<LimitUse> broken(std::span<const LimitUse> uses) {

@@ -31,11 +31,6 @@ RunMotion::RunMotion(const PathRuns& path, const PathRun& run) : path_(&path), r
   }
 }
 
-double RunMotion::control(std::int64_t k) const noexcept {
-  const auto inner = static_cast<std::int64_t>(run_->feed_mm.size());
-  return k <= 0 ? 0 : k > inner ? run_->length_mm : run_->feed_mm[static_cast<std::size_t>(k - 1)];
-}
-
 double RunMotion::at(std::int64_t period) const noexcept {
   if (period >= run_->periods) {
     return run_->length_mm;
@@ -46,10 +41,10 @@ double RunMotion::at(std::int64_t period) const noexcept {
   const std::int64_t cell = period / path_->knot();
   const std::array<double, 4>& weights = path_->knot_weights(period - cell * path_->knot());
   // From the first of the four, so that what is added to it is small and keeps its digits.
-  const double base = control(cell - 2);
+  const double base = run_->control(cell - 2);
   double sum = 0;
   for (std::int64_t i = 1; i < 4; ++i) {
-    sum += weights[static_cast<std::size_t>(i)] * (control(cell - 2 + i) - base);
+    sum += weights[static_cast<std::size_t>(i)] * (run_->control(cell - 2 + i) - base);
   }
   return base + sum;
 }
@@ -59,7 +54,7 @@ double RunMotion::between(double period) const noexcept {
   const std::array<double, 4> weights = spline_weights<3>(period / static_cast<double>(path_->knot()) - cell);
   double sum = 0;
   for (std::int64_t i = 0; i < 4; ++i) {
-    sum += weights[static_cast<std::size_t>(i)] * control(static_cast<std::int64_t>(cell) - 2 + i);
+    sum += weights[static_cast<std::size_t>(i)] * run_->control(static_cast<std::int64_t>(cell) - 2 + i);
   }
   return sum;
 }
@@ -80,29 +75,6 @@ double RunMotion::travelled(double from_period, double to_period) const noexcept
     from = to;
   }
   return sum * h;
-}
-
-double RunMotion::peak_speed() const noexcept {
-  if (!run_->fed()) {
-    return profile_.peak_velocity_mm_s;
-  }
-  double most = 0;
-  for (std::int64_t k = 0; k <= static_cast<std::int64_t>(run_->feed_mm.size()); ++k) {
-    most = std::max(most, control(k + 1) - control(k));
-  }
-  return most / (static_cast<double>(path_->knot()) * path_->period_s());
-}
-
-double RunMotion::peak_acceleration() const noexcept {
-  if (!run_->fed()) {
-    return profile_.peak_acceleration_up_mm_s2;
-  }
-  double most = 0;
-  for (std::int64_t k = 0; k <= static_cast<std::int64_t>(run_->feed_mm.size()) + 1; ++k) {
-    most = std::max(most, std::abs(control(k + 1) - 2 * control(k) + control(k - 1)));
-  }
-  const double knot_s = static_cast<double>(path_->knot()) * path_->period_s();
-  return most / (knot_s * knot_s);
 }
 
 }  // namespace gravure::texture

@@ -15,12 +15,8 @@ class RunMotion {
   double at(std::int64_t period) const noexcept;
   /// Integral of that length over periods, mm s; 0 <= from <= to, halves too.
   double travelled(double from_period, double to_period) const noexcept;
-  double peak_speed() const noexcept;         ///< mm/s
-  double peak_acceleration() const noexcept;  ///< mm/s^2
 
  private:
-  /// Control point k of the feed, which is passed about k + 1 knots after the start.
-  double control(std::int64_t k) const noexcept;
   double between(double period) const noexcept;
   const PathRuns* path_;
   const PathRun* run_;

@@ -28,10 +28,16 @@ double smoothing_s(const PathTimingRequest& request, const PathRuns& path, bool 
   return std::clamp(request.sigma_points * point_s / 4, least_s, std::max(least_s, kMost_s));
 }
 
+/// Places that slow each other come to rest only slowly: after some passes each asks for more than it needs.
+double gain_of(int pass) {
+  constexpr int kPlain = 4;
+  constexpr double kMore = 0.25;
+  return 1 + kMore * std::max(0, pass - kPlain);
+}
+
 /// Whether a fed run takes longer than the galvo alone would.
 bool slowed_feed(const PathRuns& path, const PathRun& run) {
-  return run.fed() &&
-         static_cast<double>(run.periods - 2 * path.knot()) * path.period_s() > path.profile(run).access_time_s();
+  return run.fed() && static_cast<double>(run.periods - 2 * path.knot()) * path.period_s() > run.shortest_s;
 }
 
 }  // namespace
@@ -63,7 +69,7 @@ Result<void> SevenAxisPlanner::settle(const CancelToken& cancel) {
       return Error{ErrorCode::cancelled, "stopped while the path was being timed"};
     }
     ++passes_;
-    const SlowDown slow = slow_stages(request_.limits, stages_, place_, feed_, path_);
+    const SlowDown slow = slow_stages(request_.limits, stages_, place_, gain_of(pass), feed_, path_);
     if (slow.needed && pass == kMostPasses) {
       return Error{
           ErrorCode::out_of_range,
@@ -82,16 +88,15 @@ Result<void> SevenAxisPlanner::settle(const CancelToken& cancel) {
   }
 }
 
-void SevenAxisPlanner::lower(const std::vector<LimitUse>& breaches) {
-  constexpr double kMore = 1.001;
-  Needs needs(path_);
-  for (const LimitUse& breach : breaches) {
-    const double power = breach.kind == LimitKind::speed ? 1 : breach.kind == LimitKind::acceleration ? 2 : 3;
-    const double factor = kMore * std::pow(breach.share(), 1 / power);
-    const std::int64_t period = breach.instant - SmoothPlace::kReach * cell_;
-    const std::int64_t reach = breach.axis < kStageAxes ? cell_ + cell_ / 2 : 1 + 2 * path_.knot();
-    needs.add(period - reach, period + reach, factor);
-  }
+void SevenAxisPlanner::note(const LimitUse& breach, Needs& needs) const {
+  constexpr double kMore = 1.002;
+  const double power = breach.kind == LimitKind::speed ? 1 : breach.kind == LimitKind::acceleration ? 2 : 3;
+  const std::int64_t period = breach.instant - SmoothPlace::kReach * cell_;
+  const std::int64_t reach = breach.axis < kStageAxes ? cell_ + cell_ / 2 : 1 + 2 * path_.knot();
+  needs.add(period - reach, period + reach, kMore * std::pow(breach.share(), 1 / power));
+}
+
+void SevenAxisPlanner::lower(const Needs& needs) {
   needs.slow(feed_, path_);
   retime();
 }

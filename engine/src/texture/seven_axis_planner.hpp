@@ -6,6 +6,7 @@
 #include "gravure/texture/prove_limits.hpp"
 #include "path_feed.hpp"
 #include "path_instants.hpp"
+#include "slow_stages.hpp"
 
 namespace gravure::texture {
 
@@ -16,8 +17,12 @@ class SevenAxisPlanner {
   explicit SevenAxisPlanner(const PathTimingRequest& request);
   /// Slows runs until no look finds a stage beyond its limits.
   Result<void> settle(const CancelToken& cancel);
-  /// Slows the runs round what a proof has found.
-  void lower(const std::vector<LimitUse>& breaches);
+  /// For the breaches of a proof.
+  Needs needs() const { return Needs(path_); }
+  /// Takes one down.
+  void note(const LimitUse& breach, Needs& needs) const;
+  /// Slows what they ask for.
+  void lower(const Needs& needs);
   TimedPath timed() const;
 
  private:

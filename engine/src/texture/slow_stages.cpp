@@ -32,6 +32,17 @@ struct Need {
   std::size_t axis = 0;
 };
 
+/// Whether all is within a share of the limits, which is so nearly everywhere: no roots for that.
+bool within(const SevenLimits& limits, const StageRates& r, double share) {
+  bool kept = true;
+  for (std::size_t k = 0; k < kStageAxes; ++k) {
+    kept = kept && std::abs(r.speed[k]) <= limits[k].speed * share &&
+           std::abs(r.acceleration[k]) <= limits[k].acceleration * (share * share) &&
+           std::abs(r.jerk[k]) <= limits[k].jerk * (share * share * share);
+  }
+  return kept;
+}
+
 Need need_of(const SevenLimits& limits, const StageRates& r) {
   Need need;
   for (std::size_t k = 0; k < kStageAxes; ++k) {
@@ -77,9 +88,8 @@ double left(double limit, double taken) {
 void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, const SmoothPlace* place,
                   PathRuns& path) {
   for (PathRun& run : path.runs()) {
-    const RunMotion before(path, run);
-    const double speed = place != nullptr ? before.peak_speed() : 0;
-    const double acceleration = place != nullptr ? before.peak_acceleration() : 0;
+    const double speed = place != nullptr ? path.peak_speed(run) : 0;
+    const double acceleration = place != nullptr ? path.peak_acceleration(run) : 0;
     Taken taken;
     double u = 0;
     double v = 0;
@@ -109,9 +119,9 @@ void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, c
       return std::min(left(of_u, gone) / std::max(u, kLeast), left(of_v, gone) / std::max(v, kLeast));
     };
     const SevenLimits& limits = request.limits;
-    run.caps = {cap(limits[5].speed, limits[6].speed, taken.speed),
-                cap(limits[5].acceleration, limits[6].acceleration, taken.acceleration),
-                cap(limits[5].jerk, limits[6].jerk, taken.jerk)};
+    PathRuns::cap(run, {cap(limits[5].speed, limits[6].speed, taken.speed),
+                        cap(limits[5].acceleration, limits[6].acceleration, taken.acceleration),
+                        cap(limits[5].jerk, limits[6].jerk, taken.jerk)});
   }
 }
 
@@ -175,23 +185,25 @@ void Needs::slow(PathFeed& feed, PathRuns& path) const {
   }
 }
 
-SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, PathFeed& feed,
-                     PathRuns& path) {
-  constexpr double kAllowed = 0.9995;  // of the factor: between two looks nothing is seen
-  constexpr double kMore = 1.002;      // so that the next pass is the last
+SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, double gain,
+                     PathFeed& feed, PathRuns& path) {
+  // Of the factor: between two looks nothing is seen, and feeds use their limits everywhere.
+  const double allowed = feed.any() ? 0.995 : 0.9995;
+  const double more = 1.0015 / allowed;  // so that the next pass is the last
   Needs needs(path);
   SlowDown slow;
-  double worst = kAllowed;
+  double worst = allowed;
   const auto cell = static_cast<double>(place.cell());
   const auto end = static_cast<double>(place.end());
   for (double period = -cell * static_cast<double>(SmoothPlace::kReach); period < end;) {
     const PlaceState where = place.state(period, path.period_s());
     const StageState state = stages.state(where.place);
-    const Need need = need_of(limits, rates(state, where));
-    if (need.factor > kAllowed) {
+    const StageRates now = rates(state, where);
+    if (!within(limits, now, allowed)) {
+      const Need need = need_of(limits, now);
       slow.needed = true;
       needs.add(static_cast<std::int64_t>(std::floor(period - cell)),
-                static_cast<std::int64_t>(std::ceil(period + cell)), need.factor * kMore);
+                static_cast<std::int64_t>(std::ceil(period + cell)), 1 + (need.factor * more - 1) * gain);
       if (need.factor > worst) {
         worst = need.factor;
         slow.point = where.place.index;
@@ -216,17 +228,18 @@ std::optional<std::size_t> cap_by_stages(const SevenLimits& limits, const StageS
   const double by = static_cast<double>(run.count) / std::max(run.length_mm, 1e-12);  // points a mm
   const std::size_t looks = run.count > 1 ? kLooks * run.count : 1;
   constexpr double kUnmoved = 1e-15;
-  run.caps = {1e12, 1e12, 1e12};
+  AxisBounds caps{1e12, 1e12, 1e12};
   for (std::size_t k = 0; k <= looks; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(looks);
     const StageState at = stages.state(PathRuns::place(run, share * run.length_mm));
     for (std::size_t axis = 0; axis < kStageAxes; ++axis) {
       const double slope = std::max(std::abs(at.first[axis]) * by, kUnmoved);
-      run.caps.speed = std::min(run.caps.speed, limits[axis].speed / slope);
-      run.caps.acceleration = std::min(run.caps.acceleration, limits[axis].acceleration / slope);
-      run.caps.jerk = std::min(run.caps.jerk, limits[axis].jerk / slope);
+      caps.speed = std::min(caps.speed, limits[axis].speed / slope);
+      caps.acceleration = std::min(caps.acceleration, limits[axis].acceleration / slope);
+      caps.jerk = std::min(caps.jerk, limits[axis].jerk / slope);
     }
   }
+  PathRuns::cap(run, caps);
   std::size_t worst = 0;
   for (int attempt = 0; attempt < kMostTries; ++attempt) {
     if (run.count == 1) {

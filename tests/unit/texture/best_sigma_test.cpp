@@ -13,10 +13,10 @@ PathMachine machine_of_a() {
           Stops::points, 50e-6};
 }
 
-/// On a quarter of the published curve: three times less focus offset for less than 1 % of the time.
+/// The published case: at least four times less focus offset for less than 1 % of the time.
 TEST(SplitByTime, CutsTheFocusOffsetForHardlyAnyTime) {
   const auto surface = test::published_surface();
-  const TexturePath path{hilbert_curve(7, 20).value(), 20.0 / 127};
+  const TexturePath path{hilbert_curve(8, 40).value(), 40.0 / 255};
   const auto splitter = make_splitter(SplitMethod::gaussian, {.cut = 4});
   const auto wide = split_by_published_rule(*splitter, *surface, path, {}, {});
   ASSERT_TRUE(wide);
@@ -25,7 +25,7 @@ TEST(SplitByTime, CutsTheFocusOffsetForHardlyAnyTime) {
   ASSERT_TRUE(published && best);
   EXPECT_LE(best.value().timed.time_s, 1.005 * best.value().fastest_s);
   EXPECT_LT(best.value().timed.time_s, 1.01 * published.value().timed.time_s);
-  EXPECT_LT(3 * best.value().split.most.max_focus_mm, published.value().split.most.max_focus_mm);
+  EXPECT_LT(4 * best.value().split.most.max_focus_mm, published.value().split.most.max_focus_mm);
 }
 
 TEST(SplitByTime, RefusesAShareThatIsNone) {

@@ -41,9 +41,10 @@ using LimitBreach = std::function<void(const LimitUse&)>;
 /// Every limit of every axis over the whole of a motion, by the cubics that the servo runs between set-points
 /// (cubic_motion()): largest and smallest speed of each cubic, its acceleration at both ends, its jerk. These are the
 /// extremes of the continuous motion, so no density of looking could find more. Errors as PathMotion::read(); cancelled
-/// on request.
+/// on request. More than one of `threads` read different parts at once, which the motion must bear; `breach` is told
+/// one at a time, in any order then.
 Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const SevenLimits& limits, double servo_s,
-                                           const CancelToken& cancel, const LimitBreach& breach = {});
+                                           const CancelToken& cancel, const LimitBreach& breach = {}, int threads = 1);
 
 /// The uses that are above what is allowed by more than a rounding: 1e-6 of it.
 std::vector<LimitUse> broken(std::span<const LimitUse> uses);
