@@ -7,13 +7,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
 namespace gravure::grv {
 namespace {
 
-class DiskFile final : public ByteFile {
+class DiskFile : public ByteFile {
  public:
   DiskFile(int fd, std::string path) : fd_(fd), path_(std::move(path)) {}
   DiskFile(const DiskFile&) = delete;
@@ -49,18 +50,7 @@ class DiskFile final : public ByteFile {
   }
 
   Result<void> write(std::uint64_t offset, std::span<const std::byte> bytes) override {
-    std::size_t done = 0;
-    while (done < bytes.size()) {
-      const ssize_t put = ::pwrite(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
-      if (put < 0 && errno == EINTR) {
-        continue;
-      }
-      if (put <= 0) {
-        return failure("cannot write");
-      }
-      done += static_cast<std::size_t>(put);
-    }
-    return {};
+    return write_through(fd_, offset, bytes);
   }
 
   Result<void> resize(std::uint64_t bytes) override {
@@ -70,10 +60,142 @@ class DiskFile final : public ByteFile {
     return {};
   }
 
+  Result<void> flush() override { return {}; }
+
+ protected:
+  Result<void> write_through(int fd, std::uint64_t offset, std::span<const std::byte> bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t put = ::pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (put < 0 && errno == EINTR) {
+        continue;
+      }
+      if (put <= 0) {
+        return failure("cannot write");
+      }
+      offset += static_cast<std::uint64_t>(put);
+      bytes = bytes.subspan(static_cast<std::size_t>(put));
+    }
+    return {};
+  }
+
  private:
   Error failure(const char* what) const { return {ErrorCode::io, path_ + ": " + what + ": " + std::strerror(errno)}; }
   int fd_;
   std::string path_;
+};
+
+/// Gathers what is written in a row. Whole blocks go past the page cache: filling it with fresh pages costs several
+/// times what the disk does, and pushes out what other programs have there. Everything else, and all of it where the
+/// file system does not allow that, takes the usual way. One thread at a time.
+class GatheringFile final : public DiskFile {
+ public:
+  GatheringFile(int fd, const std::string& real_path, std::string path)
+      : DiskFile(fd, std::move(path)), fd_(fd), real_path_(real_path) {}
+  GatheringFile(const GatheringFile&) = delete;
+  GatheringFile& operator=(const GatheringFile&) = delete;
+  ~GatheringFile() override {
+    if (direct_ >= 0) {
+      ::close(direct_);
+    }
+  }
+
+  Result<std::uint64_t> size() const override {
+    GRAVURE_TRY(const std::uint64_t stored, DiskFile::size());
+    return std::max(stored, gathered_ > 0 ? end() : 0);
+  }
+
+  Result<std::size_t> read(std::uint64_t offset, std::span<std::byte> out) const override {
+    if (gathered_ > 0 && offset < end() && offset + out.size() > begin_) {
+      GRAVURE_CHECK(write_gathered());
+    }
+    return DiskFile::read(offset, out);
+  }
+
+  Result<void> write(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    if (offset != end()) {
+      GRAVURE_CHECK(flush());
+    }
+    if (gathered_ == 0) {
+      begin_ = offset;
+    }
+    if (block_ == nullptr) {
+      block_.reset(static_cast<std::byte*>(std::aligned_alloc(kPageBytes, kBlockBytes)));
+      if (block_ == nullptr) {
+        return Error{ErrorCode::io, path() + ": cannot write: out of memory"};
+      }
+    }
+    while (!bytes.empty()) {
+      // Bytes lie in the block as in the pages of the file.
+      const std::size_t used = begin_ % kPageBytes + gathered_;
+      const std::size_t count = std::min(bytes.size(), kBlockBytes - used);
+      std::copy_n(bytes.data(), count, block_.get() + used);
+      gathered_ += count;
+      bytes = bytes.subspan(count);
+      if (used + count == kBlockBytes) {
+        GRAVURE_CHECK(write_block());
+      }
+    }
+    return {};
+  }
+
+  Result<void> resize(std::uint64_t bytes) override {
+    GRAVURE_CHECK(flush());
+    return DiskFile::resize(bytes);
+  }
+
+  Result<void> flush() override {
+    GRAVURE_CHECK(write_gathered());
+    begin_ = end();
+    gathered_ = 0;
+    return {};
+  }
+
+ private:
+  static constexpr std::size_t kPageBytes = 4096;
+  static constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
+
+  struct Free {
+    void operator()(std::byte* block) const { std::free(block); }
+  };
+
+  std::uint64_t end() const { return begin_ + gathered_; }
+
+  /// What is gathered stays gathered: writing it again does no harm.
+  Result<void> write_gathered() const {
+    if (gathered_ == 0) {
+      return {};
+    }
+    return write_through(fd_, begin_, {block_.get() + begin_ % kPageBytes, gathered_});
+  }
+
+  /// The block is full: its whole pages go straight to the disk.
+  Result<void> write_block() {
+    const std::size_t first = begin_ % kPageBytes;
+    const std::size_t head = first == 0 ? 0 : kPageBytes - first;
+    if (!tried_direct_) {
+      tried_direct_ = true;
+      direct_ = ::open(real_path_.c_str(), O_WRONLY | O_DIRECT | O_CLOEXEC);
+    }
+    if (direct_ < 0) {
+      return flush();
+    }
+    GRAVURE_CHECK(write_through(fd_, begin_, {block_.get() + first, head}));
+    if (!write_through(direct_, begin_ + head, {block_.get() + first + head, gathered_ - head})) {
+      ::close(std::exchange(direct_, -1));  // the usual way succeeds, or says why not
+      return flush();
+    }
+    begin_ = end();
+    gathered_ = 0;
+    return {};
+  }
+
+  int fd_;
+  std::string real_path_;
+  int direct_ = -1;
+  bool tried_direct_ = false;
+  std::unique_ptr<std::byte, Free> block_;
+  std::uint64_t begin_ = 0;
+  std::size_t gathered_ = 0;
 };
 
 class ImageFile final : public ByteFile {
@@ -91,6 +213,7 @@ class ImageFile final : public ByteFile {
   }
   Result<void> write(std::uint64_t /*offset*/, std::span<const std::byte> /*bytes*/) override { return read_only(); }
   Result<void> resize(std::uint64_t /*bytes*/) override { return read_only(); }
+  Result<void> flush() override { return {}; }
 
  private:
   static Error read_only() { return {ErrorCode::io, "program in memory: is read-only"}; }
@@ -107,12 +230,17 @@ Result<std::unique_ptr<ByteFile>> open_file(const std::string& path, OpenFor pur
   if (fd < 0) {
     return open_error(shown_path, errno);
   }
-  auto file = std::make_unique<DiskFile>(fd, shown_path);
+  std::unique_ptr<ByteFile> file;
+  if (purpose == OpenFor::writing) {
+    file = std::make_unique<GatheringFile>(fd, path, shown_path);
+  } else {
+    file = std::make_unique<DiskFile>(fd, shown_path);
+  }
   struct stat status = {};
   if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
     return Error{ErrorCode::bad_file, shown_path + ": is not a regular file; give the path of a program"};
   }
-  return std::unique_ptr<ByteFile>(std::move(file));
+  return file;
 }
 
 std::unique_ptr<ByteFile> open_image(std::span<const std::byte> image) {

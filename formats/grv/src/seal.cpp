@@ -217,7 +217,8 @@ Result<void> write_seal(ByteFile& file, const Layout& layout, const ChunkTables&
   GRAVURE_TRY(seal.surroundings_hash, hash_surroundings(file, layout, tables, seal.file_bytes));
   // The tables must lie where the seal says, or no reader could use them.
   GRAVURE_CHECK(read_tables(file, seal, seal.file_bytes));
-  return file.write(0, encode_seal(seal));
+  GRAVURE_CHECK(file.write(0, encode_seal(seal)));
+  return file.flush();
 }
 
 Result<Sealed> verify_seal(const ByteFile& file) {

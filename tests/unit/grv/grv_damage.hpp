@@ -37,6 +37,7 @@ inline void reseal(const std::string& path, const std::function<void(grv::Seal&)
   if (change_seal) {
     change_seal(seal.value());
     expect_ok(file.value()->write(0, grv::encode_seal(seal.value())));
+    expect_ok(file.value()->flush());
     return;
   }
   const auto entries = static_cast<std::size_t>(seal.value().layout.chunks());
