@@ -167,8 +167,9 @@ class Compiler {
   void work_on_tickets() {
     const std::unique_ptr<LayerLines> reader = make_layer_lines(header_, stack_, opener_, budget_.panel_bytes);
     const std::size_t bytes = static_cast<std::size_t>(geometry_.lines_per_chunk * geometry_.line_bytes);
-    std::vector<std::byte> read(bytes);
-    std::vector<std::byte> placed(bytes);
+    const auto buffers = std::make_unique_for_overwrite<std::byte[]>(2 * bytes);
+    const std::span<std::byte> read(buffers.get(), bytes);
+    const std::span<std::byte> placed(buffers.get() + bytes, bytes);
     while (true) {
       const std::int64_t ticket = next_.fetch_add(1);
       if (ticket >= tasks_.size() || !run_task(tasks_.at(ticket), ticket, *reader, read, placed)) {

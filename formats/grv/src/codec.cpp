@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "hash_avx2.hpp"
+
 namespace gravure::grv {
 namespace {
 
@@ -122,6 +124,12 @@ Result<void> unpack(Compression compression, bool raw, std::span<const std::byte
 }
 
 std::uint64_t hash_of(std::span<const std::byte> bytes) noexcept {
+#if defined(GRAVURE_HASH_AVX2)
+  static const bool avx2 = __builtin_cpu_supports("avx2") != 0;
+  if (avx2) {
+    return hash_avx2(bytes.data(), bytes.size());
+  }
+#endif
   return XXH3_64bits(bytes.data(), bytes.size());
 }
 

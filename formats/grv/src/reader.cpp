@@ -8,15 +8,16 @@
 #include <utility>
 #include <vector>
 
-#include "bit_count.hpp"
 #include "codec.hpp"
 #include "column_table.hpp"
 #include "gravure/formats/grv.hpp"
+#include "gravure/raster/count.hpp"
 #include "hdf5_channel.hpp"
 #include "hdf5_data.hpp"
 #include "hdf5_session.hpp"
 #include "header_check.hpp"
 #include "header_io.hpp"
+#include "last_bytes.hpp"
 #include "layout.hpp"
 #include "path_rows.hpp"
 #include "seal.hpp"
@@ -238,8 +239,8 @@ Result<void> GrvSource::decode(const StoredChunk& chunk, std::span<std::byte> ou
   if ((merge_last_bytes(out, layout.line_bytes) & unused_bits(contents_.header.plan.line.pixels)) != 0) {
     return damaged(chunk.address, "bits are set beyond the last pixel of a line");
   }
-  if (count_bits(out) != contents_.fired[index]) {
-    return damaged(chunk.address, std::to_string(count_bits(out)) + " pixels fire, the table says " +
+  if (raster::popcount(out) != contents_.fired[index]) {
+    return damaged(chunk.address, std::to_string(raster::popcount(out)) + " pixels fire, the table says " +
                                       std::to_string(contents_.fired[index]));
   }
   return {};

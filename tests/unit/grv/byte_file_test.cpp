@@ -1,7 +1,9 @@
 #include "byte_file.hpp"
 
 #include <gtest/gtest.h>
+#include <xxhash.h>
 
+#include "codec.hpp"
 #include "dice.hpp"
 #include "grv_support.hpp"
 
@@ -64,6 +66,16 @@ TEST(ByteFile, GivesTheSystemEverythingWhenItIsFlushed) {
   ASSERT_TRUE(file->write(5, bytes));
   ASSERT_TRUE(file->flush());
   EXPECT_EQ(grv_test::load(path).size(), 15U);
+}
+
+TEST(HashOf, IsThatOfTheLibraryAtAnyLength) {
+  test::Dice dice;
+  SCOPED_TRACE(test::Dice::note());
+  const Bytes bytes = some_bytes(dice, 5000);
+  for (std::size_t length = 0; length <= bytes.size(); length += length < 600 ? 1 : 97) {
+    const std::span<const std::byte> part(bytes.data() + length % 7, length > 7 ? length - 7 : 0);
+    ASSERT_EQ(hash_of(part), XXH3_64bits(part.data(), part.size())) << length;
+  }
 }
 
 }  // namespace

@@ -17,18 +17,20 @@ struct GrvOptions {
     none,     ///< the bits as they are
   };
   Compression compression = Compression::zstd;
-  int zstd_level = 1;                                ///< 1..19
-  std::int64_t chunk_bytes = std::int64_t{1} << 20;  ///< target size of a chunk; a longer line is a chunk by itself
+  int zstd_level = 1;  ///< 1..19
+  /// Target size of a chunk; a longer line is a chunk by itself. What is done to a chunk stays in the cache of one
+  /// core.
+  std::int64_t chunk_bytes = std::int64_t{1} << 18;
 };
 
 /// Starts a program file of `layers` layers with `lines_per_layer` lines of `line_bytes` bytes. The same chunks put in
 /// the same order give the same file, byte for byte, whatever the number of threads that encoded them.
 ///
 /// Layers that share bits (ProgramHeader::bits_of_layer) are one of the `layers` here. encode() refuses a chunk of the
-/// wrong size (bad_argument). put() refuses a chunk out of place, put before, or altered since encode() (bad_argument);
-/// a full disk is io. finish() refuses a missing chunk, a header that does not fit the chunks, fired pixels that do not
-/// add up, and set bits beyond the last pixel of a line (bad_argument).
-/// Fails with out_of_range for sizes below 1 or beyond 1 GiB a chunk, io where the file cannot be created.
+/// wrong size (bad_argument). put() refuses a chunk out of place, put before, or of another size than encode() gave it
+/// (bad_argument); a full disk is io. finish() refuses a missing chunk, a header that does not fit the chunks, fired
+/// pixels that do not add up, and set bits beyond the last pixel of a line (bad_argument). Fails with out_of_range for
+/// sizes below 1 or beyond 1 GiB a chunk, io where the file cannot be created.
 Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64_t layers, std::int64_t lines_per_layer,
                                              std::int64_t line_bytes, const GrvOptions& options = {});
 

@@ -6,9 +6,6 @@
 
 namespace gravure::grv {
 
-/// Number of set bits.
-std::int64_t count_bits(std::span<const std::byte> bytes) noexcept;
-
 /// All last bytes of lines of `line_bytes` OR-ed together: shows whether a bit beyond the last pixel is set anywhere.
 std::uint8_t merge_last_bytes(std::span<const std::byte> lines, std::int64_t line_bytes) noexcept;
 
