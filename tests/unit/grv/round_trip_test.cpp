@@ -96,13 +96,13 @@ TEST(Grv, GivesBackAJobTextWithNulAndTrailingZeros) {
   expect_round_trip(program, {});
 }
 
-TEST(Grv, CutsLayersIntoChunksOfAboutAMebibyteByDefault) {
+TEST(Grv, CutsLayersIntoChunksOfAboutAQuarterMebibyteByDefault) {
   const Folder folder;
   auto sink = create_grv(folder.file("a.grv"), 1, 27'489, 438);
   ASSERT_TRUE(sink) << sink.error().message;
   const std::int64_t lines = sink.value()->lines_per_chunk();
-  EXPECT_LE(lines * 438, std::int64_t{1} << 20);
-  EXPECT_GE(lines * 438, std::int64_t{9} << 16);
+  EXPECT_LE(lines * 438, std::int64_t{1} << 18);
+  EXPECT_GE(lines * 438, std::int64_t{9} << 14);
 }
 
 TEST(Grv, GivesAnyChunkWithoutTheOthers) {
