@@ -24,7 +24,7 @@ namespace {
 using texture::Vector2;
 
 constexpr std::size_t kMostPathBytes = std::size_t{1} << 30U;
-constexpr std::size_t kMostPoints = 1'500'000;  // a point takes some 150 bytes at the peak
+constexpr std::size_t kMostPoints = 1'500'000;  // a point takes some 900 bytes at the peak: 1.4 GB
 constexpr double kPictureStep_um = 100;
 
 std::string place_of(const TextureSettings& options, const std::string& file) {

@@ -221,6 +221,22 @@ SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const
   return slow;
 }
 
+namespace {
+
+/// When a profile from rest to rest has run so much of its stroke.
+double time_at(const motion::Profile& profile, double position_mm) {
+  double low = 0;
+  double high = profile.access_time_s();
+  constexpr int kHalvings = 50;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (low + high) / 2;
+    (profile.at(middle).position_mm < position_mm ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+}  // namespace
+
 std::optional<std::size_t> cap_by_stages(const SevenLimits& limits, const StageSpline& stages, const PathRuns& path,
                                          PathRun& run) {
   constexpr int kMostTries = 60;
@@ -248,6 +264,9 @@ std::optional<std::size_t> cap_by_stages(const SevenLimits& limits, const StageS
     const motion::Profile profile = path.profile(run);
     double most = 1;
     std::vector<double> times_s(profile.times_s.begin(), profile.times_s.end());  // where accelerations peak
+    for (std::size_t k = 1; k < run.count; ++k) {  // bends of splines peak at their points
+      times_s.push_back(time_at(profile, static_cast<double>(k) / by));
+    }
     for (std::size_t k = 1; k < looks; ++k) {
       times_s.push_back(profile.access_time_s() * static_cast<double>(k) / static_cast<double>(looks));
     }

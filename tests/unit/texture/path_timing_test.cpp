@@ -162,22 +162,52 @@ TEST(TimeSevenAxes, StaysNearTheStopModel) {
   }
 }
 
+/// C goes by many turns there, and its jerk is known to their rounding.
+void expect_limits_kept(const PathMotion& motion, const PathTimingRequest& request) {
+  const auto uses = prove_limits(motion, request.limits, request.servo_s, {});
+  ASSERT_TRUE(uses);
+  for (const LimitUse& use : uses.value()) {
+    EXPECT_LE(use.share(), 1.0002) << kPathAxes[use.axis] << " " << limit_name(use.kind);
+  }
+}
+
 TEST(TimeFiveAxes, IsTheStopModelAndKeepsLimits) {
-  Fixture f(4, 4);
+  Fixture f(5, 4);
   f.request.axes = f.five;
   const auto timed = time_five_axes(f.request, {});
   ASSERT_TRUE(timed) << timed.error().message;
   const double model_s = stop_time_s(f.five, resting_points(f.split.targets, Stops::points), f.request.limits, 0, 5);
   EXPECT_NEAR(timed.value().time_s, model_s, 0.001 * model_s);
-  const auto uses = prove_limits(*timed.value().motion, f.request.limits, f.request.servo_s, {});
-  ASSERT_TRUE(uses);
-  for (const LimitUse& use : uses.value()) {
-    EXPECT_LE(use.share(), 1.001) << kPathAxes[use.axis] << " " << limit_name(use.kind);
-  }
+  expect_limits_kept(*timed.value().motion, f.request);
   f.request.stops = Stops::corners;
   const auto corners = time_five_axes(f.request, {});
   ASSERT_TRUE(corners);
   EXPECT_LT(corners.value().time_s, timed.value().time_s);
+  expect_limits_kept(*corners.value().motion, f.request);
+}
+
+/// More than one thread finds what one finds.
+TEST(ProveLimits, SaysTheSameWhateverTheThreads) {
+  const Fixture f(4, 2);
+  const auto timed = time_seven_axes(f.request, {});
+  ASSERT_TRUE(timed);
+  SevenLimits tight = f.request.limits;
+  tight[5].jerk /= 2;
+  std::array<std::vector<LimitUse>, 3> uses;
+  std::array<std::int64_t, 3> breaches{};
+  const std::array<int, 3> threads{1, 2, 5};
+  for (std::size_t k = 0; k < threads.size(); ++k) {
+    const auto proven = prove_limits(
+        *timed.value().motion, tight, f.request.servo_s, {}, [&](const LimitUse&) { ++breaches[k]; }, threads[k]);
+    ASSERT_TRUE(proven);
+    uses[k] = proven.value();
+    EXPECT_GT(breaches[k], 0);
+    EXPECT_EQ(breaches[k], breaches[0]);
+    for (std::size_t i = 0; i < uses[k].size(); ++i) {
+      EXPECT_EQ(uses[k][i].most, uses[0][i].most);
+      EXPECT_EQ(uses[k][i].instant, uses[0][i].instant);
+    }
+  }
 }
 
 TEST(TimeSevenAxes, RefusesWhatIsNoRequest) {
