@@ -65,20 +65,24 @@ int NormalSystem::weak_directions(int unknowns, double weak_share) const {
   return static_cast<int>((solver.eigenvalues().array() <= least).count());
 }
 
-double NormalSystem::scale_share(double weak_share) const {
+bool NormalSystem::holds_scale(double weak_share) const {
+  constexpr double kRounding = 1e-12;  // of the largest eigenvalue: below, there is nothing to share
   const Eigen::MatrixXd all = matrix(kAllUnknowns);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rigid(
       Eigen::MatrixXd(all.topLeftCorner<kRigidUnknowns, kRigidUnknowns>()));
   const double largest = rigid.eigenvalues()[kRigidUnknowns - 1];
   const Eigen::VectorXd coupled = all.topRightCorner<kRigidUnknowns, 1>();
   double left = all(6, 6);
+  double weakly_shared = 0;
   for (int i = 0; i < kRigidUnknowns; ++i) {
-    if (rigid.eigenvalues()[i] > weak_share * largest) {
+    const double value = rigid.eigenvalues()[i];
+    if (value > kRounding * largest) {
       const double part = rigid.eigenvectors().col(i).dot(coupled);
-      left -= part * part / rigid.eigenvalues()[i];
+      const double shared = part * part / value;
+      value > weak_share* largest ? left -= shared : weakly_shared += shared;
     }
   }
-  return left / largest;
+  return left >= weak_share * largest && weakly_shared < left / 2;
 }
 
 }  // namespace gravure::registration

@@ -114,7 +114,7 @@ Correction correct(const CadSurface& cad, const Placed& placed, double whole_rms
   settings.with_scale = false;
   IcpState rough = icp(cad, crop, {}, settings);
   settings.with_scale = options.with_scale && rough.system.count() > 0 &&
-                        rough.system.scale_share(settings.weak_share) >= settings.weak_share;  // else as of the whole
+                        rough.system.holds_scale(settings.weak_share);  // else as of the whole
   if (settings.with_scale) {
     rough = icp(cad, crop, rough.pose, settings);
   }

@@ -72,6 +72,13 @@ ScanPoints in_order(const PointSet& scan, const std::vector<std::uint32_t>& orde
   return sorted;
 }
 
+/// Of scale 1; `place` comes where it did.
+Similarity unscaled(Similarity pose, const Eigen::Vector3d& place) {
+  pose.translation_mm += (pose.scale - 1) * (pose.rotation * place);
+  pose.scale = 1;
+  return pose;
+}
+
 /// Rigid, then with scale where it is asked for and held.
 IcpState pose_of_few(const CadSurface& cad, const ScanPoints& few, const FoundStart& start, IcpSettings& settings,
                      Registration& result) {
@@ -83,8 +90,11 @@ IcpState pose_of_few(const CadSurface& cad, const ScanPoints& few, const FoundSt
   if (!with_scale || state.system.count() == 0) {
     return state;
   }
-  result.scale_refused = state.system.scale_share(settings.weak_share) < settings.weak_share;
-  if (result.scale_refused) {
+  result.scale_refused = !state.system.holds_scale(settings.weak_share);
+  if (result.scale_refused) {  // nor may it keep the scale that the search has tried
+    settings.radius_mm = 3 * state.radius_mm;
+    state = icp(cad, few, unscaled(state.pose, centre_and_radius(few.points).first), settings);
+    result.iterations += state.iterations;
     return state;
   }
   settings.with_scale = true;

@@ -166,11 +166,17 @@ FoundStart search_start(const CadSurface& cad, const ScanPoints& scan, const Sim
   for (Candidate& candidate : kept) {
     candidate.radius_mm = std::max(candidate.radius_mm, kMiddleRadius * cad.radius_mm);
     found.iterations += improve(cad, more, settings, kFineDistance * cad.radius_mm, candidate);
-    if (with_scale) {
-      IcpSettings scaled = settings;
-      scaled.with_scale = true;
+  }
+  if (with_scale) {
+    best_first(kept);
+    const double best = 1 - kept.front().misfit;
+    settings.with_scale = true;
+    for (Candidate& candidate : kept) {
+      if (1 - candidate.misfit < kHopeless * best) {
+        continue;
+      }
       candidate.radius_mm *= 2;
-      found.iterations += improve(cad, more, scaled, kFineDistance * cad.radius_mm, candidate);
+      found.iterations += improve(cad, more, settings, kFineDistance * cad.radius_mm, candidate);
     }
   }
   best_first(kept);
