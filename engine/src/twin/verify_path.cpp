@@ -105,6 +105,7 @@ class PathJudge {
         GRAVURE_CHECK(fire(window, covered, line, slot));
       }
     }
+    last_half_ = covered.covered() - covered.at(1 - half_slot());
     ++report_.lines;
     report_.ticks += plan_.line.ticks;
     return {};
@@ -123,17 +124,19 @@ class PathJudge {
   }
 
  private:
+  double half_slot() const { return 0.5 / static_cast<double>(plan_.line.slots); }  ///< of the period
+
   Result<void> fire(const PathWindow& window, const CoveredPath& covered, std::int64_t line, std::int64_t slot) {
     ++report_.fired;
     const double share = static_cast<double>(slot) / static_cast<double>(plan_.line.slots);
-    const double half = 0.5 / static_cast<double>(plan_.line.slots);
+    const double half = half_slot();
     const double along = static_cast<double>(window[1].along_counts) + covered.at(share);
     const auto pulse = static_cast<std::int64_t>(std::floor(along / pitch_counts_));
     const double belongs = (static_cast<double>(pulse) + 0.5) * pitch_counts_;
-    // Half a slot of way, on whichever side there is more; the one beyond the period is like the one within.
-    const double way = std::max(covered.at(std::min(1.0, share + half)) - covered.at(share),
-                                covered.at(share) - covered.at(std::max(0.0, share - half)));
-    constexpr double kRounding_counts = 2;  // counts
+    // Half a slot of way, on whichever side there is more; before the first slot it is that of the period before.
+    const double before = slot == 0 ? last_half_ : covered.at(share) - covered.at(share - half);
+    const double way = std::max(covered.at(std::min(1.0, share + half)) - covered.at(share), before);
+    constexpr double kRounding_counts = 2;
     const bool in_place = std::abs(along - belongs) <= way * 1.01 + kRounding_counts;
     if (!in_place || pulse <= last_ || pulse >= path_.pulses) {
       ++report_.misplaced;
@@ -225,7 +228,8 @@ class PathJudge {
   }
 
   void hold(const char* what, const PulseFigure& figure, const std::optional<Rational>& limit, const char* unit) {
-    if (limit && figure.max > to_double(*limit)) {
+    constexpr double kRounding = 1e-6;  // of a limit, as for the axes: what lies on it by design is within
+    if (limit && figure.max > to_double(*limit) * (1 + kRounding)) {
       report_.violations.push_back(fmt::format("{} {:.6g} {} at pulse {}, allowed {:.6g}", what, figure.max, unit,
                                                figure.worst_pulse, to_double(*limit)));
     }
@@ -241,6 +245,7 @@ class PathJudge {
   double pitch_counts_;
   std::array<double, kPathAxes.size()> units_per_count_{};
   std::int64_t last_ = -1;  ///< pulse
+  double last_half_ = 0;    ///< counts covered in the last half slot of the period before
   std::int64_t beyond_ = -1;
   std::int64_t first_missing_ = -1;
   std::string first_misplaced_;

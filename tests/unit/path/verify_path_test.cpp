@@ -131,6 +131,27 @@ TEST(VerifyPath, SeesPulsesThatShouldBeDarkOrAreMissing) {
   expect_one_violation(line.run({.wanted = &other}), "1 pulses fire that are to stay dark");
 }
 
+/// A corner that a spot comes to quickly: its last pulse comes in the first slot of the period in which it hardly
+/// moves.
+TEST(VerifyPath, TakesAPulseLateByHalfASlotOfThePeriodBefore) {
+  Case corner;
+  corner.wanted.laser.pulse_divider = 410;
+  corner.wanted.servo_period_us = 100;
+  corner.instants.clear();
+  for (const double along_mm : {0.0, 0.0312065, 0.0651065, 0.0662342, 0.0820634, 0.13, 0.13, 0.13}) {
+    PathInstant instant;
+    instant.axes = {along_mm / 2, 0, 3.5, 0, 0, along_mm / 2, 0};
+    instant.along_mm = along_mm;
+    corner.instants.push_back(instant);
+  }
+  corner.pulses = all_pulses(0.01, 13);
+  const auto report = corner.run({.wanted = &corner.pulses});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report.value().fired, 13);
+  EXPECT_EQ(report.value().misplaced, 0);
+  EXPECT_EQ(report.value().missing, 0);
+}
+
 TEST(VerifyPath, PutsEveryPulseOnTheWorkpiece) {
   const Case line;
   std::int64_t next = 0;
