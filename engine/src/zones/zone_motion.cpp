@@ -41,6 +41,15 @@ motion::JerkRequest request_of(double stroke, const Limits& limits) {
   return {{stroke, limits.speed, limits.acceleration, limits.acceleration, 0, 0}, limits.jerk, limits.jerk};
 }
 
+/// The axes follow the cubic through four set-points, whose speed may be beyond that of the motion by 0.1587 jerk
+/// period^2 (Peano's kernel); its acceleration and jerk are means of those of the motion.
+void leave_room(Limits& limits, double period_s) {
+  constexpr double kBeyond = 0.1587;
+  const double squared = kBeyond * period_s * period_s;
+  limits.jerk = std::min(limits.jerk, limits.speed / 2 / squared);
+  limits.speed -= limits.jerk * squared;
+}
+
 /// Corners that a stroke turns at, its ends included.
 std::vector<Vector3> turning_points(const std::vector<Vector3>& points) {
   constexpr double kStraight_rad = 1e-9;
@@ -212,11 +221,21 @@ Result<std::unique_ptr<ZoneMotion>> ZoneMotion::create(const ZonePlan& plan, con
                                                        const ZoneMotionRequest& request) {
   GRAVURE_CHECK(check_positive("servo_period_s", request.servo_period_s));
   GRAVURE_CHECK(check_positive("mark_speed_mm_s", request.mark_speed_mm_s));
+  if (!(request.jump_speed_mm_s > 0)) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("jump_speed_mm_s = {}: must be greater than 0", request.jump_speed_mm_s)};
+  }
   auto data = std::make_unique<Data>();
   data->machine = machine;
   data->period_s = request.servo_period_s;
   data->most_moves = request.most_moves;
   GRAVURE_CHECK(data->find_axes());
+  for (const std::size_t galvo : {kStages, kStages + 1}) {
+    data->limits[galvo].speed = std::min(data->limits[galvo].speed, request.jump_speed_mm_s);
+  }
+  for (Limits& limits : data->limits) {
+    leave_room(limits, request.servo_period_s);
+  }
   // U and V are no faster than the spot on the part: the beam sees the way shortened.
   data->mark = data->limits[kStages];
   data->mark.speed = std::min(data->mark.speed, request.mark_speed_mm_s);

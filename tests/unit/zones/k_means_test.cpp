@@ -100,6 +100,27 @@ TEST(KMeans, EndsWhereNoPointIsNearerToAnotherCentre) {
   }
 }
 
+/// The middle point is as far from both ends: it goes to the end that was drawn first, and of starts that leave the
+/// same the first is kept.
+TEST(KMeans, GivesTiesToTheLowerIndex) {
+  const std::vector<double> points{0, 0, 0, 1, 2, 2, 2};
+  int seen = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const std::size_t first = random_word(seed, 0, 0) % points.size();
+    if (points[first] == 1) {
+      continue;  // a centre of its own
+    }
+    const bool from_left = points[first] == 0;
+    for (const int starts : {1, 5}) {
+      const Clustering found = k_means(points, {2, 1, seed, starts}).value();
+      ASSERT_EQ(found.inertia, 0.75) << seed;
+      EXPECT_EQ(found.labels[3], from_left ? 0U : 1U) << seed << ", " << starts << " starts";
+    }
+    seen |= from_left ? 1 : 2;
+  }
+  EXPECT_EQ(seen, 3);
+}
+
 TEST(KMeans, NumbersClustersByTheirFirstMembers) {
   const std::vector<double> points{9, 9.1, 0, 0.1, 5, 5.1};
   const Clustering found = k_means(points, {3, 1, 1, 5}).value();

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "ceramic_core.hpp"
+#include "gravure/core/path_expand.hpp"
 
 namespace gravure::zones {
 namespace {
@@ -98,6 +99,29 @@ TEST(ZoneMotion, KeepsAllAxesWithinTheirLimits) {
   }
 }
 
+/// Of the cubics through the set-points, which is what the axes are ordered to follow; jumps no faster than asked for.
+TEST(ZoneMotion, KeepsTheSpeedsOfItsCubicsWithinTheirLimits) {
+  const ZonePlanRequest request = small_core();
+  const ZonePlan plan = plan_zones(request).value();
+  for (const double jump_speed_mm_s : {1e9, 700.0}) {
+    const auto made = ZoneMotion::create(plan, request.machine, {kPeriod_s, 200, 1'000'000, jump_speed_mm_s}).value();
+    std::vector<PathInstant> instants(static_cast<std::size_t>(made->instants()));
+    ASSERT_TRUE(made->read(0, instants));
+    double fastest = 0;
+    for (std::size_t axis = 5; axis < 7; ++axis) {
+      for (std::size_t i = 3; i < instants.size(); ++i) {
+        const auto at = [&](std::size_t back) { return instants[i - back].axes[axis]; };
+        for (int place = 0; place <= 10; ++place) {
+          fastest = std::max(fastest, std::abs(cubic_motion({at(3), at(2), at(1), at(0)}, place / 10.0).speed));
+        }
+      }
+    }
+    const double most = std::min(jump_speed_mm_s, *request.machine.head.max_speed_mm_s);
+    EXPECT_LE(fastest / kPeriod_s, most * (1 + 1e-9));
+    EXPECT_GE(fastest / kPeriod_s, 0.8 * most);
+  }
+}
+
 TEST(ZoneMotion, ReadsTheSameInPieces) {
   const ZonePlanRequest request = small_core();
   const ZonePlan plan = plan_zones(request).value();
@@ -122,6 +146,7 @@ TEST(ZoneMotion, RefusesMachinesItCannotTime) {
   machine.head.max_jerk_mm_s3.reset();
   EXPECT_EQ(ZoneMotion::create(plan, machine, {kPeriod_s, 200}).error().code, ErrorCode::bad_argument);
   EXPECT_EQ(ZoneMotion::create(plan, request.machine, {0, 200}).error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(ZoneMotion::create(plan, request.machine, {kPeriod_s, 200, 1000, 0}).error().code, ErrorCode::out_of_range);
   EXPECT_EQ(ZoneMotion::create(plan, request.machine, {kPeriod_s, 200, 10}).error().code, ErrorCode::out_of_range);
   EXPECT_EQ(ZoneMotion::create({}, request.machine, {kPeriod_s, 200}).error().code, ErrorCode::bad_argument);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct ZoneMotionRequest {
   double servo_period_s = 0;   ///< > 0
   double mark_speed_mm_s = 0;  ///< > 0: of the spot along a contour, at most
   std::size_t most_moves = 5'000'000;
+  double jump_speed_mm_s = std::numeric_limits<double>::infinity();  ///< > 0: of U and V in the dark, at most
 };
 
 /// What happens when, in the order of a plan.
@@ -31,7 +33,8 @@ struct ZoneTimes {
 /// dark jumps between them. A stroke is marked from corner to corner, at rest in each (corners that do not turn are
 /// passed), so that the spot never leaves the contour. Every move is a synchronised jerk-limited profile from rest to
 /// rest under the limits of joints and galvo (engine/motion), begins at an instant of the servo and ends at or before
-/// one.
+/// one. Speeds stay so far below their limits that those of the cubics between set-points (core/path_expand.hpp) keep
+/// to them.
 class ZoneMotion final : public PathMotion {
  public:
   /// The machine must have the joints X, Y, Z, A and C and no others, and limits of speed, acceleration and jerk for
