@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "gravure/core/file_output.hpp"
+#include "gravure/formats/contours.hpp"
 #include "gravure/formats/freeform_job.hpp"
 #include "gravure/formats/job_file.hpp"
 #include "gravure/formats/tiff_writer.hpp"
+#include "gravure/formats/zones_job.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -22,8 +24,11 @@ struct Options {
   std::string folder = ".";
 };
 
-const std::map<std::string, Mode> kModes = {
-    {"rotary", Mode::rotary}, {"helical", Mode::helical}, {"flat", Mode::flat}, {"freeform", Mode::freeform}};
+const std::map<std::string, Mode> kModes = {{"rotary", Mode::rotary},
+                                            {"helical", Mode::helical},
+                                            {"flat", Mode::flat},
+                                            {"freeform", Mode::freeform},
+                                            {"zones", Mode::zones}};
 
 /// A diamond lattice that closes round the circumference; the second layer keeps only its crossings.
 std::vector<std::byte> starter_picture(int layer, int pixels, int lines) {
@@ -56,35 +61,45 @@ Result<void> write_picture(const std::string& path, int layer, int pixels, int l
   return {};
 }
 
-Result<void> write_starter(Mode mode, const fs::path& job, const fs::path& pictures,
-                           std::vector<std::string>& written) {
-  const bool freeform = mode == Mode::freeform;
+/// Pictures or contours into `inputs`, the job that names them beside it.
+Result<void> write_starter(Mode mode, const fs::path& job, const fs::path& inputs, std::vector<std::string>& written) {
+  const bool in_folder = mode != Mode::freeform && mode != Mode::zones;
   std::error_code failed;
-  fs::create_directories(freeform ? job.parent_path() : pictures, failed);
+  fs::create_directories(in_folder ? inputs : job.parent_path(), failed);
   if (failed) {
-    return Error{ErrorCode::io, pictures.string() + ": cannot make the folder: " + failed.message()};
+    return Error{ErrorCode::io, inputs.string() + ": cannot make the folder: " + failed.message()};
   }
-  if (freeform) {
-    GRAVURE_CHECK(write_picture(pictures.string(), 0, kStarterTexturePixels, kStarterTextureLines, written));
+  if (mode == Mode::freeform) {
+    GRAVURE_CHECK(write_picture(inputs.string(), 0, kStarterTexturePixels, kStarterTextureLines, written));
   }
-  for (int layer = 0; !freeform && layer < kStarterLayers; ++layer) {
+  if (mode == Mode::zones) {
+    GRAVURE_CHECK(write_file(inputs.string(), formats::contours_to_json(starter_contours())));
+    written.push_back(inputs.string());
+  }
+  for (int layer = 0; in_folder && layer < kStarterLayers; ++layer) {
     if (cancel_token().cancelled()) {
       return Error{ErrorCode::cancelled, "stopped before the job was complete; nothing was written"};
     }
-    GRAVURE_CHECK(write_picture((pictures / fmt::format("layer_{:03}.tif", layer)).string(), layer, kStarterPixels,
+    GRAVURE_CHECK(write_picture((inputs / fmt::format("layer_{:03}.tif", layer)).string(), layer, kStarterPixels,
                                 kStarterLines, written));
   }
-  GRAVURE_CHECK(write_file(job.string(), freeform ? freeform_starter_job() : starter_job(mode)));
+  GRAVURE_CHECK(write_file(job.string(), mode == Mode::freeform ? freeform_starter_job()
+                                         : mode == Mode::zones  ? starter_zones_job()
+                                                                : starter_job(mode)));
   written.insert(written.begin(), job.string());
   return {};
+}
+
+const char* inputs_of(Mode mode) {
+  return mode == Mode::freeform ? "texture.tif" : mode == Mode::zones ? "contours.json" : "layers";
 }
 
 Result<int> run(const Options& options, const Command& command) {
   const fs::path job = fs::path(options.folder) / "job.toml";
   const Mode mode = kModes.at(options.mode);
-  const fs::path pictures = fs::path(options.folder) / (mode == Mode::freeform ? "texture.tif" : "layers");
+  const fs::path inputs = fs::path(options.folder) / inputs_of(mode);
   std::error_code failed;
-  for (const fs::path& taken : {job, pictures}) {
+  for (const fs::path& taken : {job, inputs}) {
     if (fs::exists(fs::symlink_status(taken, failed))) {  // also a link to nowhere
       return Error{ErrorCode::bad_argument, taken.string() + ": is there already; give another folder"};
     }
@@ -92,8 +107,8 @@ Result<int> run(const Options& options, const Command& command) {
   cancel_token();  // before there is a folder: from here on Ctrl-C takes it away again
   const bool made_folder = !fs::exists(fs::symlink_status(options.folder, failed));
   std::vector<std::string> written;
-  if (Result<void> done = write_starter(mode, job, pictures, written); !done) {  // so that it can be tried again
-    fs::remove_all(made_folder ? fs::path(options.folder) : pictures, failed);
+  if (Result<void> done = write_starter(mode, job, inputs, written); !done) {  // so that it can be tried again
+    fs::remove_all(made_folder ? fs::path(options.folder) : inputs, failed);
     return done.error();
   }
   if (command.json) {
@@ -102,7 +117,9 @@ Result<int> run(const Options& options, const Command& command) {
     for (const std::string& path : written) {
       print(path + "\n");
     }
-    print(fmt::format("next: gravure verify {}\n", job.string()));
+    print(mode == Mode::zones ? fmt::format("next: gravure zones compile {} -o {}\n", job.string(),
+                                            fs::path(job).replace_extension(".grv").string())
+                              : fmt::format("next: gravure verify {}\n", job.string()));
   }
   return kDone;
 }
@@ -112,9 +129,9 @@ Result<int> run(const Options& options, const Command& command) {
 void add_init(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "init", "Write a commented starter job that runs as it is");
   const auto options = std::make_shared<Options>();
-  verb->add_option("--mode", options->mode, "Kind of job: rotary, helical, flat or freeform")
+  verb->add_option("--mode", options->mode, "Kind of job: rotary, helical, flat, freeform or zones")
       ->required()
-      ->check(CLI::IsMember({"rotary", "helical", "flat", "freeform"}));
+      ->check(CLI::IsMember({"rotary", "helical", "flat", "freeform", "zones"}));
   verb->add_option("DIR", options->folder, "Folder to write to")->capture_default_str();
   verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
 }

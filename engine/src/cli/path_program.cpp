@@ -91,6 +91,11 @@ std::string text_of(const PathReport& report) {
   return text;
 }
 
+/// Contours have a pulse in every place of one.
+PathPulses all_pulses_of(const PathPlan& path) {
+  return {0, path.pulses, std::vector<std::byte>(static_cast<std::size_t>((path.pulses + 7) / 8), std::byte{0xFF})};
+}
+
 }  // namespace
 
 Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& given,
@@ -98,6 +103,11 @@ Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& gi
                                 const Command& command) {
   VerifyPathOptions options = given;
   options.cancel = &cancel_token();
+  PathPulses all;
+  if (const Plan& plan = program.header().plan; options.wanted == nullptr && plan.mode == Mode::zones) {
+    all = all_pulses_of(*plan.path);
+    options.wanted = &all;
+  }
   Result<PathReport> judged = [&] {
     ProgressBar bar("verify");
     options.progress = &bar;

@@ -10,6 +10,7 @@
 #include "motion_options.hpp"
 #include "program_files.hpp"
 #include "texture_options.hpp"
+#include "zones_compile.hpp"
 #include "zones_input.hpp"
 #include "zones_plot.hpp"
 
@@ -188,6 +189,7 @@ void add_zones(CLI::App& app, Command& command) {
   CLI::App* zones = app.add_subcommand("zones", "Contours on a part that looks to many sides, zone by zone");
   zones->require_subcommand(1);
   add_plan_verb(*zones, command);
+  add_zones_compile(*zones, command);
 }
 
 }  // namespace gravure::cli
