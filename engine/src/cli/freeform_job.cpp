@@ -63,7 +63,15 @@ Result<Evidence> evidence_of(const ProgramHeader& header, const std::string& pat
   if (!find_files(header, path, folder, job.texture, evidence)) {
     return evidence;
   }
-  GRAVURE_TRY(evidence.wanted, wanted_of(job));
+  Result<WantedTexture> wanted = wanted_of(job);
+  if (!wanted && wanted.error().code == ErrorCode::cancelled) {
+    return wanted.error();
+  }
+  if (!wanted) {
+    evidence.violations.push_back("the job cannot be made anew: " + wanted.error().message);
+    return evidence;
+  }
+  evidence.wanted = std::move(wanted).value();
   if (evidence.wanted->pulses.count != header.plan.path->pulses) {
     evidence.violations.push_back(fmt::format("the job's files lead to {} pulses, the program has {}: compile again",
                                               evidence.wanted->pulses.count, header.plan.path->pulses));

@@ -28,6 +28,31 @@ TEST(SplitByTime, CutsTheFocusOffsetForHardlyAnyTime) {
   EXPECT_LT(4 * best.value().split.most.max_focus_mm, published.value().split.most.max_focus_mm);
 }
 
+TEST(TimeSplit, FindsThePointsWhereTheWorkpieceLies) {
+  const auto surface = test::published_surface();
+  const TexturePath path{hilbert_curve(3, 2).value(), 2.0 / 7};
+  const auto split = split_path(*surface, path, {.sigma_mm = 1});
+  ASSERT_TRUE(split);
+  PathMachine machine = machine_of_a();
+  const auto level = time_split(split.value(), path, machine, {});
+  machine.clamping = {0.1, -0.05};
+  machine.branch = kinematics::Branch::negative;
+  const auto tilted = time_split(split.value(), path, machine, {});
+  ASSERT_TRUE(level && tilted);
+  const Split lying = clamped(split.value(), machine.clamping);
+  const auto axes = seven_axes(machine.machine, lying.targets, lying.stages, machine.branch);
+  ASSERT_TRUE(axes);
+  for (std::size_t i = 0; i < lying.targets.size(); ++i) {
+    EXPECT_EQ(level.value().targets()[i].position_mm, split.value().targets[i].position_mm);
+    EXPECT_EQ(tilted.value().targets()[i].position_mm, lying.targets[i].position_mm);
+    EXPECT_EQ(tilted.value().split.targets[i].position_mm, split.value().targets[i].position_mm);
+    EXPECT_EQ(tilted.value().axes[i].a_rad, axes.value()[i].a_rad);
+    EXPECT_EQ(tilted.value().axes[i].c_rad, axes.value()[i].c_rad);
+    EXPECT_LE(tilted.value().axes[i].a_rad, 0);
+  }
+  EXPECT_NE(level.value().timed.time_s, 0);
+}
+
 TEST(SplitByTime, RefusesAShareThatIsNone) {
   const auto splitter = make_splitter(SplitMethod::gaussian, {});
   const auto split = split_by_time(*splitter, *test::published_surface(), {hilbert_curve(2, 1).value(), 1.0 / 3}, {},
