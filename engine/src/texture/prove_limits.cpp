@@ -207,7 +207,9 @@ Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const Seven
     }
     uses[0].join(uses[k + 1]);
   }
-  GRAVURE_CHECK(outcome);
+  if (!outcome) {
+    return outcome.error();
+  }
   return uses[0].uses();
 }
 
