@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostPointBytes = std::size_t{1} << 26U;
 
-struct Options {
+struct CalibrateArguments {
   std::string points;
   std::string output;
   std::string field_mm;
@@ -22,12 +22,7 @@ struct Options {
   std::size_t rows = 17;
 };
 
-/// To 1e-6 um: marks are not measured closer, and what is less depends on the compiler.
-double figure(double um) {
-  return std::round(um * 1e6) / 1e6 + 0.0;
-}
-
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_calibrate(const CalibrateArguments& options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite(options.output, {options.points}));
   GRAVURE_TRY(const Rational field_mm, decimal_option("--field-mm", options.field_mm));
   GRAVURE_TRY(const Rational smoothing, decimal_option("--smoothing", options.smoothing));
@@ -44,27 +39,27 @@ Result<int> run(const Options& options, const Command& command) {
   const scan::Calibration& made = calibration.value();
   GRAVURE_CHECK(write_file(options.output, scan::field_grid_text(made.grid)));
   const scan::MeasuredPoint& worst = points.value()[made.worst];
-  const double interpolation_um = figure(made.grid.interpolation_error_um());
+  const double interpolation_um = rounded(made.grid.interpolation_error_um(), 6);
   if (command.json) {
     print_json({{"grid", options.output},
                 {"points", points.value().size()},
                 {"columns", made.grid.columns},
                 {"rows", made.grid.rows},
-                {"rms_um", figure(made.rms_um)},
-                {"max_um", figure(made.max_um)},
+                {"rms_um", rounded(made.rms_um, 6)},
+                {"max_um", rounded(made.max_um, 6)},
                 {"worst",
                  {{"point", made.worst},
                   {"u_mm", worst.order.u_mm},
                   {"v_mm", worst.order.v_mm},
-                  {"alone_um", figure(made.worst_alone_um)}}},
+                  {"alone_um", rounded(made.worst_alone_um, 6)}}},
                 {"interpolation_um", interpolation_um}});
   } else {
     print(fmt::format(
         "{} marks on a grid of {} x {} in {}: misfit {:.4g} um rms, {:.4g} um at most; interpolation adds {:.4g} "
         "um\nmark {} at U {} mm, V {} mm stands out most: {:.4g} um from where the other marks say\n",
-        points.value().size(), made.grid.columns, made.grid.rows, options.output, figure(made.rms_um),
-        figure(made.max_um), interpolation_um, made.worst, worst.order.u_mm, worst.order.v_mm,
-        figure(made.worst_alone_um)));
+        points.value().size(), made.grid.columns, made.grid.rows, options.output, rounded(made.rms_um, 6),
+        rounded(made.max_um, 6), interpolation_um, made.worst, worst.order.u_mm, worst.order.v_mm,
+        rounded(made.worst_alone_um, 6)));
   }
   return kDone;
 }
@@ -75,7 +70,7 @@ void add_calibrate(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "calibrate",
                             "Field grid from measured marks: CSV with u_order_mm, v_order_mm, u_landing_mm, "
                             "v_landing_mm, a mark a line");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CalibrateArguments>();
   verb->add_option("POINTS", options->points, "Marks (CSV)")->required();
   verb->add_option("-o,--output", options->output, "Field grid to write, for scanner.field_grid")->required();
   verb->add_option("--field-mm", options->field_mm, "Side of the field that the grid covers")->required();
@@ -88,7 +83,8 @@ void add_calibrate(CLI::App& app, Command& command) {
       ->capture_default_str();
   verb->add_option("--smoothing", options->smoothing, "Weight of bending against misfit, 1e-12 to 1")
       ->capture_default_str();
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback(
+      [&command, options] { command.run = [&command, options] { return run_calibrate(*options, command); }; });
 }
 
 }  // namespace gravure::cli

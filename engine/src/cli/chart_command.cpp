@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 using MakeChart = Result<Chart> (*)(const ChartBase&, const ChartOptions&);
 
-struct Options {
+struct ChartArguments {
   std::string job;
   std::string folder;
   std::string field_mm;
@@ -34,7 +34,7 @@ struct BaseJob {
   std::map<std::pair<std::string, std::string>, std::string> keys;
 };
 
-Result<BaseJob> read_base(const Options& options) {
+Result<BaseJob> read_base(const ChartArguments& options) {
   BaseJob base{"the starter job", starter_job(Mode::rotary), {}};
   if (!options.job.empty()) {
     base.path = options.job;
@@ -65,7 +65,7 @@ std::string job_text(const BaseJob& base, ChartJob job) {
 }
 
 /// Loads a job of the chart where it is written; errors name the place where it will be.
-Result<LoadedJob> load_written(const FolderOutput& folder, const Options& options, const std::string& name,
+Result<LoadedJob> load_written(const FolderOutput& folder, const ChartArguments& options, const std::string& name,
                                bool need_images) {
   const ImageFiles files;
   Result<LoadedJob> loaded = load_job(folder.file(name).string(), files, need_images);
@@ -87,7 +87,7 @@ Result<LoadedJob> load_written(const FolderOutput& folder, const Options& option
 }
 
 /// Machine and workpiece of the job, as a plan of one pixel a line.
-Result<ChartBase> plan_base(const FolderOutput& folder, const Options& options, const BaseJob& base) {
+Result<ChartBase> plan_base(const FolderOutput& folder, const ChartArguments& options, const BaseJob& base) {
   GRAVURE_TRY(const Job job, parse_job(base.text, base.path));
   const ChartJob bare{"chart",
                       job.mode == Mode::flat ? "flat" : "rotary",
@@ -117,7 +117,7 @@ Result<void> write_pictures(const FolderOutput& folder, const std::vector<ChartP
   return {};
 }
 
-Result<int> run(MakeChart make, const Options& options, const Command& command) {
+Result<int> run_chart(MakeChart make, const ChartArguments& options, const Command& command) {
   cancel_token();  // before there is a folder: from here on Ctrl-C takes it away again
   GRAVURE_TRY(const BaseJob base, read_base(options));
   GRAVURE_TRY(FolderOutput folder, FolderOutput::create(options.folder));
@@ -157,15 +157,16 @@ Result<int> run(MakeChart make, const Options& options, const Command& command) 
   return kDone;
 }
 
-std::shared_ptr<Options> add_chart(CLI::App& charts, Command& command, const std::string& name,
-                                   const std::string& description, MakeChart make) {
+std::shared_ptr<ChartArguments> add_chart(CLI::App& charts, Command& command, const std::string& name,
+                                          const std::string& description, MakeChart make) {
   CLI::App* verb = add_verb(charts, command, name, description);
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ChartArguments>();
   verb->add_option("-o,--output", options->folder, "Folder for the job and its images: new, or empty")->required();
   verb->add_option("--job", options->job,
                    "Job whose machine and workpiece are taken; without it those of the starter job");
-  verb->callback(
-      [&command, options, make] { command.run = [&command, options, make] { return run(make, *options, command); }; });
+  verb->callback([&command, options, make] {
+    command.run = [&command, options, make] { return run_chart(make, *options, command); };
+  });
   return options;
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "charts.hpp"
+#include "verb.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -28,7 +29,7 @@ MarkRow mark_row(const ChartBase& base, const ChartOptions& options, std::int64_
   const double share = 2 * static_cast<double>(row) / static_cast<double>(options.rows - 1) - 1;
   MarkRow made;
   // Whole millionths of a degree, so that the job says exactly what the table does.
-  made.offset_deg = std::round(std::asin(share * reach_mm / radius_mm) * 180 / std::numbers::pi * 1e6) / 1e6 + 0.0;
+  made.offset_deg = rounded(std::asin(share * reach_mm / radius_mm) * 180 / std::numbers::pi, 6);
   made.v_mm = radius_mm * std::sin(made.offset_deg * std::numbers::pi / 180);
   const std::int64_t middle = (options.rows - 1) / 2;
   made.name = row == middle ? "job" : fmt::format("job_{}", row);

@@ -15,7 +15,7 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct CompileArguments {
   std::string job;
   std::string output;
   std::string compression = "zstd";
@@ -54,7 +54,7 @@ Result<Shard> range_option(const std::string& option, const std::string& text, s
 }
 
 /// The part of the job that is asked for; nothing for all of it.
-Result<std::optional<Shard>> shard_of(const Options& options, const LoadedJob& loaded) {
+Result<std::optional<Shard>> shard_of(const CompileArguments& options, const LoadedJob& loaded) {
   const Plan& plan = loaded.plan;
   if (options.revolutions.empty() && options.bands.empty()) {
     return std::optional<Shard>();
@@ -111,7 +111,7 @@ std::string text_of(const CompileOutcome& outcome, const std::string& output, do
 }
 
 /// Freeform jobs are made in one go: they have no revolutions or bands to share out.
-Result<int> run_freeform(const Options& options, const Command& command) {
+Result<int> run_freeform(const CompileArguments& options, const Command& command) {
   if (!options.revolutions.empty() || !options.bands.empty() || options.resume) {
     return Error{ErrorCode::bad_argument,
                  "--revolutions, --bands, --resume: a freeform job is compiled whole; leave them out"};
@@ -123,7 +123,7 @@ Result<int> run_freeform(const Options& options, const Command& command) {
   return compile_freeform_job(job, options.output, grv_options(options.compression), command);
 }
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_compile(const CompileArguments& options, const Command& command) {
   if (is_freeform_job(options.job)) {
     return run_freeform(options, command);
   }
@@ -151,7 +151,7 @@ Result<int> run(const Options& options, const Command& command) {
 
 void add_compile(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "compile", "Image stack, or texture on a surface, to program file");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompileArguments>();
   verb->add_option("JOB", options->job, "Job file")->required();
   verb->add_option("-o,--output", options->output, "Program file to write (.grv)")->required();
   verb->add_option("--compression", options->compression, "How line bits are stored")
@@ -163,7 +163,7 @@ void add_compile(CLI::App& app, Command& command) {
       ->excludes(revolutions);
   verb->add_flag("--resume", options->resume, "Leave an output that is there, whole and of this job, as it is");
   add_work_options(*verb, command);
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback([&command, options] { command.run = [&command, options] { return run_compile(*options, command); }; });
 }
 
 }  // namespace gravure::cli

@@ -44,7 +44,7 @@ std::string text_of(const usb::BoardReport& board) {
   return text + "\n" + (board.problem.empty() ? "" : "  cannot be used: " + board.problem + "\n");
 }
 
-Result<int> run(const Command& command, std::int64_t wait_s) {
+Result<int> run_devices(const Command& command, std::int64_t wait_s) {
   if (wait_s > 0) {
     CancelToken& cancel = cancel_token();
     GRAVURE_CHECK(usb::wait_for_board("", std::chrono::seconds(wait_s), [&] { return cancel.cancelled(); }));
@@ -73,7 +73,7 @@ void add_devices(CLI::App& app, Command& command) {
   const auto wait_s = std::make_shared<std::int64_t>(0);
   verb->add_option("--wait-s", *wait_s, "Wait so many seconds for a board to be plugged in")
       ->check(integer_from(0, kMostWaitSeconds));
-  verb->callback([&command, wait_s] { command.run = [&command, wait_s] { return run(command, *wait_s); }; });
+  verb->callback([&command, wait_s] { command.run = [&command, wait_s] { return run_devices(command, *wait_s); }; });
 }
 
 }  // namespace gravure::cli

@@ -10,7 +10,7 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct DumpArguments {
   std::string program;
   std::int64_t revolution = 0;
   std::int64_t line = 0;
@@ -39,7 +39,7 @@ class SlotText final : public PinObserver {
   std::string text_;
 };
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_dump(const DumpArguments& options, const Command& command) {
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
   const Plan& plan = header.plan;
@@ -79,7 +79,7 @@ void add_dump(CLI::App& app, Command& command) {
       app, command, "dump",
       "The slots of one line as 0 and 1 in time order. Where the job is bidirectional, line L of revolution R runs "
       "backwards if R * lines_per_revolution + L is odd: the scanner alternates over the whole job");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DumpArguments>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
   verb->add_option("--revolution", options->revolution, "Revolution, from 0")
       ->required()
@@ -87,7 +87,7 @@ void add_dump(CLI::App& app, Command& command) {
   verb->add_option("--line", options->line, "Line of the revolution, from 0")
       ->required()
       ->check(integer_from(0, kMostIndex));
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback([&command, options] { command.run = [&command, options] { return run_dump(*options, command); }; });
 }
 
 }  // namespace gravure::cli

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ExportArguments {
   std::string program;
   std::string folder;
   int form = 0;                  ///< 0: the smallest that carries the resolution
@@ -33,17 +33,13 @@ struct StreamFile {
   std::uint64_t frames = 0;
 };
 
-Result<scan::FrameForm> form_of(const Options& options, int resolution_bits) {
+Result<scan::FrameForm> form_of(const ExportArguments& options, int resolution_bits) {
   return scan::frame_form_for(options.form != 0 ? options.form : resolution_bits);
 }
 
 std::string name_of(const LineSetPoints& line, bool flat) {
   const std::string direction = direction_name(line.reverse);
   return flat ? direction + (line.backwards ? "_backwards.gxy2" : "_onwards.gxy2") : direction + ".gxy2";
-}
-
-Result<void> check_not_stopped() {
-  return cancel_token().cancelled() ? Error{ErrorCode::cancelled, "stopped; nothing was written"} : Result<void>();
 }
 
 /// Rotary and flat: each way that lines run, once.
@@ -90,7 +86,7 @@ Result<std::vector<StreamFile>> write_revolution(const scan::JobTrajectory& traj
   return std::vector<StreamFile>{file};
 }
 
-Result<void> check_revolution(const Options& options, const Plan& plan) {
+Result<void> check_revolution(const ExportArguments& options, const Plan& plan) {
   if (!plan.carriage) {
     return options.revolution < 0
                ? Result<void>()
@@ -105,7 +101,7 @@ Result<void> check_revolution(const Options& options, const Plan& plan) {
   return check_index("--revolution", options.revolution, plan.job.revolutions);
 }
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_export(const ExportArguments& options, const Command& command) {
   if (!options.nc_folder.empty()) {
     return export_path(options.program, options.nc_folder, options.block_ms, command);
   }
@@ -155,7 +151,7 @@ void add_export(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "export",
                             "Set-points as frames for digital scan heads: rotary and flat jobs, each way that lines "
                             "run once; helical jobs, the lines of one revolution in order");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportArguments>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
   CLI::Option* frames = verb->add_option("--xy2-100", options->folder, "Folder for the frame files: new, or empty");
   CLI::Option* nc = verb->add_option("--nc", options->nc_folder,
@@ -176,7 +172,7 @@ void add_export(CLI::App& app, Command& command) {
     if (options->folder.empty() && options->nc_folder.empty()) {
       throw CLI::RequiredError("--xy2-100 or --nc");
     }
-    command.run = [&command, options] { return run(*options, command); };
+    command.run = [&command, options] { return run_export(*options, command); };
   });
 }
 

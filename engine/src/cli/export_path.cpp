@@ -16,6 +16,7 @@
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/nc_program.hpp"
 #include "gravure/scan/xy2_100.hpp"
+#include "path_program.hpp"
 #include "text_output.hpp"
 
 namespace gravure::cli {
@@ -26,18 +27,13 @@ constexpr double kWritten = 0.6e-9;  // half of the last digit written, and the 
 constexpr int kFrameBits = 20;
 constexpr std::string_view kTableHead = "t_s,X_mm,Y_mm,Z_mm,A_deg,C_deg,U_mm,V_mm,along_mm\n";
 
-Result<void> check_not_stopped() {
-  return cancel_token().cancelled() ? Error{ErrorCode::cancelled, "stopped; nothing was written"} : Result<void>();
-}
-
 /// The set-points of a program in mm and degrees, block by block.
 class Places {
  public:
   explicit Places(LineSource& program) : program_(program), total_(set_points_of(program.header().plan)) {
     const PathPlan& path = *program.header().plan.path;
     for (std::size_t axis = 0; axis < units_.size(); ++axis) {
-      const bool turns = kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
-      units_[axis] = (turns ? 180 / std::numbers::pi : 1) / to_double(path.axes[axis].counts_per_unit);
+      units_[axis] = (axis_turns(axis) ? 180 / std::numbers::pi : 1) / to_double(path.axes[axis].counts_per_unit);
     }
     along_unit_ = 1 / to_double(path.along_counts_per_mm);
   }
@@ -293,8 +289,7 @@ class Exporter {
 Json json_of(const Deviation& deviation) {
   Json json = Json::object();
   for (std::size_t axis = 0; axis < nc::kStages; ++axis) {
-    const bool turns = kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
-    json[std::string(kPathAxes[axis]) + (turns ? "_deg" : "_mm")] = deviation.most[axis];
+    json[std::string(kPathAxes[axis]) + (axis_turns(axis) ? "_deg" : "_mm")] = deviation.most[axis];
   }
   return json;
 }

@@ -18,7 +18,7 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct ExposureArguments {
   std::string folder;
   std::string program;
   std::optional<std::int64_t> revolution;
@@ -51,7 +51,7 @@ struct Times {
 };
 
 /// As many rows at a time as fit the budget; the lines are read once for each part.
-Result<Times> render(const Options& options, ExposureCount& count, BilevelTiffWriter& writer,
+Result<Times> render(const ExposureArguments& options, ExposureCount& count, BilevelTiffWriter& writer,
                      std::int64_t memory_bytes) {
   const UnrolledSize size = count.size();
   const std::int64_t rows = std::clamp<std::int64_t>((memory_bytes - 4 * kMiB) / size.width, 0, size.height);
@@ -90,7 +90,7 @@ BilevelTiffPage page_of(const ProgramHeader& header) {
 }
 
 /// The one that was noted, unless another is asked for: that one may have run before it.
-Result<void> choose_program(Options& options) {
+Result<void> choose_program(ExposureArguments& options) {
   const Result<emulator::NotedProgram> noted = emulator::noted_program(options.folder);
   const bool asked = !options.program.empty();
   if (!noted) {
@@ -112,7 +112,7 @@ Result<void> choose_program(Options& options) {
   return {};
 }
 
-Result<int> run(Options options, const Command& command) {
+Result<int> run_exposure(ExposureArguments options, const Command& command) {
   GRAVURE_CHECK(choose_program(options));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
@@ -152,7 +152,7 @@ Result<int> run(Options options, const Command& command) {
 
 void add_exposure(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "exposure", "How often an emulated board has fired each pixel, as a picture");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExposureArguments>();
   verb->add_option("DIR", options->folder, "Folder of the emulated board")->required();
   CLI::Option* revolution =
       verb->add_option("--revolution", options->revolution, "Revolution (flat: pass), from 0; not in helical programs")
@@ -163,7 +163,8 @@ void add_exposure(CLI::App& app, Command& command) {
   verb->add_option("--program", options->program, "Program it ran (.grv); default: the one that run noted there");
   verb->add_option("-o,--output", options->output, "TIFF to write, a grey level a time: 0, 1, 2 ...")->required();
   add_work_options(*verb, command);
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback(
+      [&command, options] { command.run = [&command, options] { return run_exposure(*options, command); }; });
 }
 
 }  // namespace gravure::cli

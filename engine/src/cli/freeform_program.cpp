@@ -9,6 +9,7 @@
 
 #include "gravure/formats/image_files.hpp"
 #include "gravure/pipeline/path_plan.hpp"
+#include "path_program.hpp"
 #include "program_files.hpp"
 
 namespace gravure::cli {
@@ -59,8 +60,7 @@ Result<void> check_programmable(const FreeformJob& job) {
 }
 
 PathAxisPlan axis_plan(std::size_t axis, const texture::AxisBounds& bounds) {
-  const bool turns = kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
-  const auto number = turns ? exact_degrees : exact;
+  const auto number = axis_turns(axis) ? exact_degrees : exact;
   PathAxisPlan plan;
   plan.limits = {number(bounds.speed), number(bounds.acceleration), number(bounds.jerk)};
   return plan;

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct InitArguments {
   std::string mode;
   std::string folder = ".";
 };
@@ -90,14 +90,14 @@ Result<void> write_starter(Mode mode, const fs::path& job, const fs::path& input
   return {};
 }
 
-const char* inputs_of(Mode mode) {
+const char* starter_inputs(Mode mode) {
   return mode == Mode::freeform ? "texture.tif" : mode == Mode::zones ? "contours.json" : "layers";
 }
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_init(const InitArguments& options, const Command& command) {
   const fs::path job = fs::path(options.folder) / "job.toml";
   const Mode mode = kModes.at(options.mode);
-  const fs::path inputs = fs::path(options.folder) / inputs_of(mode);
+  const fs::path inputs = fs::path(options.folder) / starter_inputs(mode);
   std::error_code failed;
   for (const fs::path& taken : {job, inputs}) {
     if (fs::exists(fs::symlink_status(taken, failed))) {  // also a link to nowhere
@@ -128,12 +128,12 @@ Result<int> run(const Options& options, const Command& command) {
 
 void add_init(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "init", "Write a commented starter job that runs as it is");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InitArguments>();
   verb->add_option("--mode", options->mode, "Kind of job: rotary, helical, flat, freeform or zones")
       ->required()
       ->check(CLI::IsMember({"rotary", "helical", "flat", "freeform", "zones"}));
   verb->add_option("DIR", options->folder, "Folder to write to")->capture_default_str();
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback([&command, options] { command.run = [&command, options] { return run_init(*options, command); }; });
 }
 
 }  // namespace gravure::cli

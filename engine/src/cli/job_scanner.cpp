@@ -7,6 +7,7 @@
 
 #include "gravure/core/file_output.hpp"
 #include "gravure/scan/field_grid.hpp"
+#include "verb.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -25,11 +26,6 @@ Error at_key(const Job& job, const Error& error) {
     }
   }
   return {error.code, job.place_of("scanner") + error.message};
-}
-
-/// To 1e-9 of the unit: what is less depends on the compiler.
-Json figure(double value) {
-  return std::round(value * 1e9) / 1e9 + 0.0;
 }
 
 /// The turn with the least time to spare.
@@ -110,20 +106,20 @@ Json trajectory_json(const scan::LineTrajectory& trajectory) {
   const scan::LineQuality& quality = trajectory.quality;
   const Turn turn = tightest_turn(trajectory.path);
   return {{"set_points", trajectory.forward.size()},
-          {"resolution_um", figure(trajectory.resolution_mm * 1000)},
-          {"scan_speed_mm_s", figure(trajectory.scan_speed_mm_s)},
-          {"turn_us", figure(turn.lasts_us)},
-          {"shortest_turn_us", turn.shortest_us > 0 ? figure(turn.shortest_us) : Json(nullptr)},
-          {"reach_mm", figure(trajectory.path.reach_mm())},
+          {"resolution_um", rounded(trajectory.resolution_mm * 1000, 9)},
+          {"scan_speed_mm_s", rounded(trajectory.scan_speed_mm_s, 9)},
+          {"turn_us", rounded(turn.lasts_us, 9)},
+          {"shortest_turn_us", turn.shortest_us > 0 ? Json(rounded(turn.shortest_us, 9)) : Json(nullptr)},
+          {"reach_mm", rounded(trajectory.path.reach_mm(), 9)},
           {"lag_ticks", trajectory.lag_ticks},
           {"lag_remainder_ticks", json_ratio(trajectory.lag_remainder_ticks)},
-          {"along_um", figure(quality.along_um)},
-          {"across_um", figure(quality.across_um)},
-          {"interpolation_um", figure(quality.interpolation_um)},
-          {"defocus_um", figure(quality.defocus_um)},
-          {"straight_um", figure(quality.straight_um)},
-          {"incidence_deg", figure(quality.incidence_deg)},
-          {"field_grid_error_um", figure(trajectory.field_grid_error_um)}};
+          {"along_um", rounded(quality.along_um, 9)},
+          {"across_um", rounded(quality.across_um, 9)},
+          {"interpolation_um", rounded(quality.interpolation_um, 9)},
+          {"defocus_um", rounded(quality.defocus_um, 9)},
+          {"straight_um", rounded(quality.straight_um, 9)},
+          {"incidence_deg", rounded(quality.incidence_deg, 9)},
+          {"field_grid_error_um", rounded(trajectory.field_grid_error_um, 9)}};
 }
 
 }  // namespace gravure::cli

@@ -12,12 +12,12 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct MergeArguments {
   std::vector<std::string> shards;
   std::string output;
 };
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_merge(const MergeArguments& options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite(options.output, options.shards));
   GRAVURE_TRY(const ProgramHeader header, merge_shards(options.shards, options.output));
   if (command.json) {
@@ -38,11 +38,11 @@ Result<int> run(const Options& options, const Command& command) {
 void add_merge(CLI::App& app, Command& command) {
   CLI::App* verb =
       add_verb(app, command, "merge", "Shards of a job, made by compile --revolutions, to its program file");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MergeArguments>();
   verb->add_option("SHARD", options->shards, "Shards, in any order: together every revolution of the job once")
       ->required();
   verb->add_option("-o,--output", options->output, "Program file to write (.grv)")->required();
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback([&command, options] { command.run = [&command, options] { return run_merge(*options, command); }; });
 }
 
 }  // namespace gravure::cli

@@ -10,8 +10,6 @@
 namespace gravure::cli {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;
-
 struct IdentifyOptions {
   std::string recording;
   bool step = false;
@@ -49,7 +47,7 @@ std::string identification_csv(const motion::Identification& found) {
 
 Result<int> run_identify(const IdentifyOptions& options, bool json) {
   GRAVURE_CHECK(check_outputs(options.output, {options.recording}));
-  GRAVURE_TRY(const std::string text, read_file(options.recording, kMostBytes));
+  GRAVURE_TRY(const std::string text, read_file(options.recording, kMostMotionBytes));
   motion::IdentifyRequest request;
   auto recording = motion::parse_recording_csv(text);
   if (!recording) {

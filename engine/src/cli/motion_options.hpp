@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 #include "gravure/motion/settling.hpp"
 
 namespace gravure::cli {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
+inline constexpr std::size_t kMostMotionBytes = std::size_t{1} << 30;  ///< of a file that a verb of motion reads
 
 inline constexpr double kAnyNumber = std::numeric_limits<double>::max();
 /// Refuses what is no decimal number from `least` to `most`; with kAnyNumber for `most` any finite one goes, its range

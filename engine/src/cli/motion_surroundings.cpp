@@ -9,16 +9,13 @@
 namespace gravure::cli {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
 Error in_file(const std::string& path, const Error& error) {
   return {error.code, path + ": " + error.message};
 }
 
 Result<std::vector<motion::Vector3>> points_of_blade(const SurroundingOptions& options,
                                                      const motion::Vector3& centre_mm) {
-  GRAVURE_TRY(const std::string text, read_file(options.blade, kMostBytes));
+  GRAVURE_TRY(const std::string text, read_file(options.blade, kMostMotionBytes));
   const auto rails = motion::parse_blade_csv(text);
   if (!rails) {
     return in_file(options.blade, rails.error());
@@ -86,7 +83,7 @@ Result<std::vector<motion::Vector3>> surrounding_points(const SurroundingOptions
                                                         const motion::Vector3& centre_mm) {
   std::vector<motion::Vector3> points;
   if (!options.surface.empty()) {
-    GRAVURE_TRY(const std::string text, read_file(options.surface, kMostBytes));
+    GRAVURE_TRY(const std::string text, read_file(options.surface, kMostMotionBytes));
     auto read = motion::parse_points_csv(text);
     if (!read) {
       return in_file(options.surface, read.error());

@@ -16,9 +16,6 @@
 namespace gravure::cli {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
 struct UnreverseOptions {
   std::string program;
   double tolerance_deg = 0;
@@ -89,7 +86,7 @@ motion::ToolPose tool_at(const UnreverseOptions& options, const ToolPath& path, 
 
 Result<ToolPath> load_path(const UnreverseOptions& options) {
   ToolPath path;
-  GRAVURE_TRY(path.text, read_file(options.program, kMostBytes));
+  GRAVURE_TRY(path.text, read_file(options.program, kMostMotionBytes));
   GRAVURE_TRY(path.read, motion::parse_rotary_program(path.text, options.program));
   if (path.read.line.size() < 2) {
     return Error{ErrorCode::bad_file, options.program + ": fewer than 2 blocks turn A or C: nothing to do"};

@@ -10,10 +10,6 @@
 namespace gravure::cli {
 namespace {
 
-bool turns(std::size_t axis) {
-  return kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
-}
-
 Json figure_json(const PulseFigure& figure) {
   return {{"max", figure.max},
           {"rms", figure.rms},
@@ -24,7 +20,7 @@ Json axes_json(const PathReport& report) {
   Json axes = Json::object();
   for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
     const AxisUse& use = report.axes[axis];
-    const std::string unit = turns(axis) ? "deg" : "mm";
+    const std::string unit = axis_turns(axis) ? "deg" : "mm";
     axes[std::string(kPathAxes[axis])] = {{"least_" + unit, use.least},
                                           {"most_" + unit, use.most},
                                           {"max_speed_" + unit + "_s", use.max_speed},
@@ -76,9 +72,9 @@ std::string text_of(const PathReport& report) {
                       "jerk /s^3");
   for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
     const AxisUse& use = report.axes[axis];
-    text +=
-        fmt::format("{:<2}{:<4}{:>14.6f}{:>14.6f}{:>14.6g}{:>16.6g}{:>16.6g}\n", kPathAxes[axis],
-                    turns(axis) ? "deg" : "mm", use.least, use.most, use.max_speed, use.max_acceleration, use.max_jerk);
+    text += fmt::format("{:<2}{:<4}{:>14.6f}{:>14.6f}{:>14.6g}{:>16.6g}{:>16.6g}\n", kPathAxes[axis],
+                        axis_turns(axis) ? "deg" : "mm", use.least, use.most, use.max_speed, use.max_acceleration,
+                        use.max_jerk);
   }
   text += "\n";
   for (const std::string& note : report.notes) {
@@ -97,6 +93,10 @@ PathPulses all_pulses_of(const PathPlan& path) {
 }
 
 }  // namespace
+
+bool axis_turns(std::size_t axis) {
+  return kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
+}
 
 Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& given,
                                 const std::vector<std::string>& violations, const std::vector<std::string>& notes,

@@ -10,6 +10,9 @@
 
 namespace gravure::cli {
 
+/// A and C of kPathAxes, not the others.
+bool axis_turns(std::size_t axis);
+
 /// What `verify` does with a program that follows a path; `violations` and `notes` are what is known of it already.
 Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& options,
                                 const std::vector<std::string>& violations, const std::vector<std::string>& notes,

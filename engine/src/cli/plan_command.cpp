@@ -100,7 +100,7 @@ std::string joints_text(const std::vector<scan::JointReach>& joints) {
 Json joints_json(const std::vector<scan::JointReach>& joints) {
   Json json = Json::object();
   const auto figure = [](const std::optional<double>& value) {
-    return value ? Json(std::round(*value * 1e9) / 1e9 + 0.0) : Json(nullptr);
+    return value ? Json(rounded(*value, 9)) : Json(nullptr);
   };
   for (const scan::JointReach& joint : joints) {
     const std::string unit = joint.kind == kinematics::JointKind::revolute ? "_deg" : "_mm";

@@ -20,7 +20,7 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct PreviewArguments {
   std::string program;
   std::string output;
   std::optional<std::int64_t> layer;  // none: all, as depth
@@ -123,7 +123,8 @@ Json json_of(const Part& part) {
   return {{"left", 0}, {"top", part.top}, {"width", part.size.width}, {"height", part.size.height}};
 }
 
-Result<report::LayerPictures> pictures_of(const Options& options, const ProgramHeader& header, const Command& command) {
+Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const ProgramHeader& header,
+                                          const Command& command) {
   ProgressBar bar("preview");
   report::LayerPicturesOptions pictures;
   pictures.memory_bytes = command.memory_bytes();
@@ -142,7 +143,7 @@ Result<report::LayerPictures> pictures_of(const Options& options, const ProgramH
   return report::layer_pictures([&options] { return open_grv(options.program); }, emulated_devices(), pictures);
 }
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_preview(const PreviewArguments& options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite(options.output, {options.program}));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
@@ -209,7 +210,7 @@ void add_preview(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "preview",
                             "A picture of what a program exposes: unrolled, all layers as depth or one, and the seam "
                             "enlarged below");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PreviewArguments>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
   verb->add_option("-o,--output", options->output, "PNG to write")->required();
   verb->add_option("--layer", options->layer, "Layer of the image stack, from 0; else all of them as depth")
@@ -218,7 +219,7 @@ void add_preview(CLI::App& app, Command& command) {
       ->check(integer_from(64, 8'192))
       ->capture_default_str();
   add_work_options(*verb, command);
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback([&command, options] { command.run = [&command, options] { return run_preview(*options, command); }; });
 }
 
 }  // namespace gravure::cli

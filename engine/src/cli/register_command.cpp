@@ -33,11 +33,6 @@ struct RegisterOptions {
   registration::ContourOptions around;
 };
 
-/// The last digits may differ from one compiler to the next.
-double rounded(double value) {
-  return std::round(value * 1e9) / 1e9 + 0.0;
-}
-
 /// To 6 digits, whatever the size.
 double six_digits(double value) {
   return std::isfinite(value) && value != 0 ? std::stod(fmt::format("{:.5e}", value)) : 0;
@@ -97,13 +92,13 @@ Json registration_json(const Registration& found) {
   Json transform = Json::array();
   const Eigen::Matrix4d matrix = found.cad_to_scan.matrix();
   for (int row = 0; row < 4; ++row) {
-    transform.push_back(
-        {rounded(matrix(row, 0)), rounded(matrix(row, 1)), rounded(matrix(row, 2)), rounded(matrix(row, 3))});
+    transform.push_back({rounded(matrix(row, 0), 9), rounded(matrix(row, 1), 9), rounded(matrix(row, 2), 9),
+                         rounded(matrix(row, 3), 9)});
   }
   return {{"transform", transform},
-          {"scale", rounded(found.cad_to_scan.scale)},
-          {"rms_mm", rounded(found.rms_mm)},
-          {"inliers", rounded(share(found))},
+          {"scale", rounded(found.cad_to_scan.scale, 9)},
+          {"rms_mm", rounded(found.rms_mm, 9)},
+          {"inliers", rounded(share(found), 9)},
           {"inlier_points", found.inliers},
           {"scan_points", found.scan_points},
           {"iterations", found.iterations},
@@ -124,8 +119,8 @@ Json contours_json(const std::vector<PlacedContour>& placed) {
     all.push_back({{"id", one.contour.id},
                    {"refined", one.refined},
                    {"scan_points", one.scan_points},
-                   {"rms_mm", rounded(one.rms_mm)},
-                   {"moved_mm", rounded(one.moved_mm)},
+                   {"rms_mm", rounded(one.rms_mm, 9)},
+                   {"moved_mm", rounded(one.moved_mm, 9)},
                    {"weak_directions", one.weak_directions}});
   }
   return all;
@@ -138,8 +133,8 @@ std::string registration_text(const Registration& found) {
                   found.converged ? "" : ", not converged");
   const Eigen::Matrix4d matrix = found.cad_to_scan.matrix();
   for (int row = 0; row < 3; ++row) {
-    text += fmt::format("{:12.9f} {:12.9f} {:12.9f} {:14.6f}\n", rounded(matrix(row, 0)), rounded(matrix(row, 1)),
-                        rounded(matrix(row, 2)), rounded(matrix(row, 3)));
+    text += fmt::format("{:12.9f} {:12.9f} {:12.9f} {:14.6f}\n", rounded(matrix(row, 0), 9), rounded(matrix(row, 1), 9),
+                        rounded(matrix(row, 2), 9), rounded(matrix(row, 3), 9));
   }
   for (const registration::WeakDirection& weak : found.weak_directions) {
     text += fmt::format("not held: {}\n", weak.name);
@@ -152,7 +147,7 @@ std::string residuals_csv(const PointSet& scan, const Registration& found) {
   for (std::size_t i = 0; i < scan.points_mm.size(); ++i) {
     const auto& [x, y, z] = scan.points_mm[i];
     csv += fmt::format("{},{},{},", x, y, z);
-    csv += std::isfinite(found.residuals_mm[i]) ? fmt::format("{:.6f}\n", rounded(found.residuals_mm[i])) : "\n";
+    csv += std::isfinite(found.residuals_mm[i]) ? fmt::format("{:.6f}\n", rounded(found.residuals_mm[i], 9)) : "\n";
   }
   return csv;
 }
@@ -184,10 +179,10 @@ Result<std::vector<PlacedContour>> place_contours(const RegisterOptions& options
   std::size_t refined = 0;
   for (PlacedContour& one : placed) {
     for (Point3& point : one.contour.points_mm) {
-      point = {rounded(point[0]), rounded(point[1]), rounded(point[2])};
+      point = {rounded(point[0], 9), rounded(point[1], 9), rounded(point[2], 9)};
     }
-    one.contour.direction = {rounded(one.contour.direction[0]), rounded(one.contour.direction[1]),
-                             rounded(one.contour.direction[2])};
+    one.contour.direction = {rounded(one.contour.direction[0], 9), rounded(one.contour.direction[1], 9),
+                             rounded(one.contour.direction[2], 9)};
     there.push_back(one.contour);
     refined += one.refined ? 1 : 0;
   }
@@ -199,7 +194,7 @@ Result<std::vector<PlacedContour>> place_contours(const RegisterOptions& options
   return placed;
 }
 
-Result<formats::ContourFile> load_contours(const RegisterOptions& options) {
+Result<formats::ContourFile> contours_to_move(const RegisterOptions& options) {
   if (options.contours.empty() != options.contours_output.empty()) {
     return Error{ErrorCode::bad_argument, "--contours and --contours-out belong together"};
   }
@@ -217,7 +212,7 @@ Result<int> run_register(const RegisterOptions& options, bool json) {
   GRAVURE_CHECK(refuse_overwrite(
       {{"--output", options.output}, {"--contours-out", options.contours_output}, {"--residuals", options.residuals}},
       {options.cad, options.scan, options.contours}));
-  GRAVURE_TRY(const formats::ContourFile contours, load_contours(options));
+  GRAVURE_TRY(const formats::ContourFile contours, contours_to_move(options));
   GRAVURE_TRY(const CadModel cad, load_cad(options.cad));
   GRAVURE_TRY(const PointSet scan, load_scan(options.scan));
   GRAVURE_TRY(const Registration found, registration::register_scan(cad, scan, options.pose));

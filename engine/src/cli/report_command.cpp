@@ -12,7 +12,7 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct ReportArguments {
   ReportRequest request;
   std::string images;
 };
@@ -26,7 +26,7 @@ Result<void> check_line(const ReportRequest& request) {
   return check_index("--line", request.line.value_or(0), plan.rotary.lines_per_revolution);
 }
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_report(const ReportArguments& options, const Command& command) {
   const ReportRequest& request = options.request;
   GRAVURE_CHECK(refuse_overwrite(request.output, {request.program}));
   GRAVURE_CHECK(check_line(request));
@@ -57,7 +57,7 @@ Result<int> run(const Options& options, const Command& command) {
 
 void add_report(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "report", "Verify a program and write one page to look at before cutting");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportArguments>();
   verb->add_option("PROGRAM", options->request.program, "Program file (.grv)")->required();
   verb->add_option("-o,--output", options->request.output, "HTML file to write")->required();
   verb->add_option("--images", options->images, "Folder with the images, where they are not at the job's paths");
@@ -69,7 +69,7 @@ void add_report(CLI::App& app, Command& command) {
   add_work_options(*verb, command);
   verb->callback([&command, options] {
     options->request.name = std::filesystem::path(options->request.program).filename().string();
-    command.run = [&command, options] { return run(*options, command); };
+    command.run = [&command, options] { return run_report(*options, command); };
   });
 }
 

@@ -25,7 +25,7 @@ using session::RunReport;
 
 constexpr int kInterrupted = 4;
 
-struct Options {
+struct RunArguments {
   std::string program;
   std::string device;
   std::string journal;
@@ -109,7 +109,7 @@ Json place_json(const Plan& plan, const session::Place& place) {
       {"lines", place.line}, {"revolution", place.line / lines}, {"line", place.line % lines}, {"slots", place.slots}};
 }
 
-Json report_json(const Options& options, const Plan& plan, const DeviceIdentity& device,
+Json report_json(const RunArguments& options, const Plan& plan, const DeviceIdentity& device,
                  const session::Journal& journal, const RunReport& report) {
   Json json = {{"program", options.program},
                {"device", options.device},
@@ -158,7 +158,7 @@ Json report_json(const Options& options, const Plan& plan, const DeviceIdentity&
   return json;
 }
 
-void print_report(const Options& options, const Plan& plan, const DeviceIdentity& device,
+void print_report(const RunArguments& options, const Plan& plan, const DeviceIdentity& device,
                   const session::Journal& journal, const RunReport& report) {
   const RunCounts& counts = report.counts;
   print(fmt::format("{} on {} (serial {}): {}\n{} of {} lines executed, {} accepted, {} sent\n", options.program,
@@ -180,7 +180,7 @@ void print_report(const Options& options, const Plan& plan, const DeviceIdentity
   }
 }
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_program(const RunArguments& options, const Command& command) {
   const CancelToken& cancel = cancel_token();
   const std::string journal_path = options.journal.empty() ? options.program + ".journal" : options.journal;
   GRAVURE_CHECK(refuse_overwrite({{"--journal", journal_path}}, {options.program}));
@@ -239,7 +239,7 @@ Result<int> run(const Options& options, const Command& command) {
 
 void add_run(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "run", "Run a program on a board, or go on with it");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunArguments>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
   verb->add_option("--record", options->record, "File to write what goes over the link into, for --device replay:FILE");
   verb->add_option("--device", options->device, std::string("The board: ") + kDeviceNames)->required();
@@ -269,7 +269,7 @@ void add_run(CLI::App& app, Command& command) {
     if (options->device == "emulated") {
       options->device = "emulated:" + options->program + ".board";
     }
-    command.run = [&command, options] { return run(*options, command); };
+    command.run = [&command, options] { return run_program(*options, command); };
   });
 }
 

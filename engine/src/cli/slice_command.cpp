@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SliceArguments {
   std::string map;
   std::string folder;
   std::int64_t levels = 0;
@@ -26,7 +26,7 @@ struct Options {
   std::string depth_max;
 };
 
-Result<LayerStack> stack_of(const Options& options, const ImageInfo& info) {
+Result<LayerStack> stack_of(const SliceArguments& options, const ImageInfo& info) {
   if (info.samples == SampleType::bit) {
     return Error{ErrorCode::bad_file, options.map + ": is bilevel; a depth map has 8, 16 or 32 bits a sample"};
   }
@@ -51,14 +51,14 @@ Result<LayerStack> stack_of(const Options& options, const ImageInfo& info) {
   return stack;
 }
 
-std::string layer_path(const Options& options, std::int64_t level) {
+std::string layer_path(const SliceArguments& options, std::int64_t level) {
   const auto digits = std::max<std::size_t>(3, std::to_string(options.levels - 1).size());
   return (fs::path(options.folder) / fmt::format("layer_{:0{}}.tif", level, digits)).string();
 }
 
 /// Slices levels [first, first + count) in one pass over the map. What is written is the map's polarity: where a pulse
 /// fires the layer is white, or black where black fires.
-Result<void> slice_levels(const Options& options, const LayerStack& stack, const ImageInfo& info,
+Result<void> slice_levels(const SliceArguments& options, const LayerStack& stack, const ImageInfo& info,
                           const ImageOpener& files, std::int64_t first, std::int64_t count,
                           std::vector<std::int64_t>& fired) {
   std::vector<BilevelTiffWriter> writers;
@@ -98,7 +98,7 @@ Result<void> slice_levels(const Options& options, const LayerStack& stack, const
 }
 
 /// A layer of an earlier, deeper slicing would be cut after these.
-Result<void> refuse_surplus(const Options& options) {
+Result<void> refuse_surplus(const SliceArguments& options) {
   const std::string surplus = layer_path(options, options.levels);
   std::error_code ignored;
   if (fs::exists(surplus, ignored)) {
@@ -108,7 +108,7 @@ Result<void> refuse_surplus(const Options& options) {
   return {};
 }
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_slice(const SliceArguments& options, const Command& command) {
   const ImageFiles files;
   GRAVURE_TRY(const std::unique_ptr<ImageSource> map, files.open(options.map, 0));
   const ImageInfo info = map->info();
@@ -155,7 +155,7 @@ Result<int> run(const Options& options, const Command& command) {
 
 void add_slice(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "slice", "Depth map to a stack of bilevel layers");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SliceArguments>();
   verb->add_option("MAP", options->map, "Depth map: 8 or 16 bits, or float")->required();
   verb->add_option("-o,--output", options->folder, "Folder for the layers")->required();
   verb->add_option("--levels", options->levels, "Number of layers")->required()->check(integer_from(1, 65536));
@@ -164,7 +164,7 @@ void add_slice(CLI::App& app, Command& command) {
       ->check(CLI::IsMember({"white", "black"}));
   verb->add_option("--depth-min", options->depth_min, "Sample at the shallow end (default 0)");
   verb->add_option("--depth-max", options->depth_max, "Sample at the other end (default 255, 65535, or 1 for float)");
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback([&command, options] { command.run = [&command, options] { return run_slice(*options, command); }; });
 }
 
 }  // namespace gravure::cli

@@ -10,7 +10,7 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct SuggestArguments {
   std::string job;
   SuggestTolerances tolerances;
   std::string pitch_percent = "1";
@@ -83,7 +83,7 @@ std::string outlook_text(const SuggestOutlook& outlook) {
   return text;
 }
 
-Result<int> run(Options options, const Command& command) {
+Result<int> run_suggest(SuggestArguments options, const Command& command) {
   GRAVURE_TRY(options.tolerances.pitch_percent, decimal_option("--pitch-percent", options.pitch_percent));
   GRAVURE_TRY(options.tolerances.diameter_um, decimal_option("--diameter-um", options.diameter_um));
   const ImageFiles files;
@@ -118,7 +118,7 @@ Result<int> run(Options options, const Command& command) {
 
 void add_suggest(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "suggest", "Nearest jobs whose seam closes exactly, and what each costs");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SuggestArguments>();
   verb->add_option("JOB", options->job, "Job file")->required();
   verb->add_option("--lines", options->tolerances.lines_per_revolution, "Lines per revolution, more or less")
       ->check(integer_from(0, 1'000'000'000))
@@ -131,7 +131,7 @@ void add_suggest(CLI::App& app, Command& command) {
   verb->add_option("--most", options->tolerances.most_suggestions, "Suggestions at most")
       ->check(integer_from(1, 1000))
       ->capture_default_str();
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback([&command, options] { command.run = [&command, options] { return run_suggest(*options, command); }; });
 }
 
 }  // namespace gravure::cli

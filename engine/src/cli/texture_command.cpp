@@ -15,7 +15,7 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct TextureArguments {
   TextureSettings texture;
   SplitSettings split;
   AxesSettings axes;
@@ -41,7 +41,7 @@ Result<texture::Split> split_of(const SplitSettings& options, const texture::Sur
              : texture::split_by_published_rule(*splitter, surface, path, limits, cancel_token());
 }
 
-std::string how_sigma(const SplitSettings& options, const texture::Split& split) {
+std::string which_sigma(const SplitSettings& options, const texture::Split& split) {
   if (options.method == "adaptive") {
     return " at most, narrowed where limits ask for it";
   }
@@ -73,7 +73,7 @@ std::string advice_text(const texture::ClampingAdvice& advice) {
                              : std::string("              no tilt pays\n"));
 }
 
-void print_json(const Options& options, const Found& found) {
+void print_found_json(const TextureArguments& options, const Found& found) {
   Json json = split_json(surface_name(options.texture), found.path, found.split);
   json["split"] = options.split.method;
   if (options.split.method == "optimal") {
@@ -89,11 +89,11 @@ void print_json(const Options& options, const Found& found) {
     json["clamping"] = advice_json(*found.advice);
   }
   json["violations"] = found.violations;
-  cli::print_json(json);
+  print_json(json);
 }
 
-void print_text(const Options& options, const Found& found) {
-  std::string text = split_text(found.path, found.split, options.split, how_sigma(options.split, found.split));
+void print_text(const TextureArguments& options, const Found& found) {
+  std::string text = split_text(found.path, found.split, options.split, which_sigma(options.split, found.split));
   text += fmt::format("stages        {}: bend {:.4g} /mm at most, jerk {:.4g} /mm^2 at most, {:.4g} rms\n",
                       options.split.method, found.demand.max_bend_per_mm, found.demand.max_jerk_per_mm2,
                       found.demand.rms_jerk_per_mm2);
@@ -110,7 +110,7 @@ void print_text(const Options& options, const Found& found) {
   print(text);
 }
 
-Result<Found> find(const Options& options) {
+Result<Found> find(const TextureArguments& options) {
   Found found;
   GRAVURE_TRY(const std::unique_ptr<texture::Surface> surface, surface_of(options.texture));
   GRAVURE_TRY(found.path, path_of(options.texture));
@@ -127,21 +127,21 @@ Result<Found> find(const Options& options) {
   return found;
 }
 
-Result<int> decompose(const Options& options, const Command& command) {
+Result<int> decompose(const TextureArguments& options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite({{"--points", options.points}}, inputs_of(options.texture)));
   GRAVURE_TRY(const Found found, find(options));
   if (!options.points.empty()) {
     GRAVURE_TRY(const std::vector<texture::SevenAxes> axes, axes_of(options.axes, found.split));
     GRAVURE_CHECK(write_points(options.points, found.split, axes, options.split.focus_axis));
   }
-  command.json ? print_json(options, found) : print_text(options, found);
+  command.json ? print_found_json(options, found) : print_text(options, found);
   return found.violations.empty() ? kDone : kLimitViolated;
 }
 
 void add_decompose(CLI::App& texture, Command& command) {
   CLI::App* verb =
       add_verb(texture, command, "decompose", "Split a path on a surface between five stages and the galvo");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TextureArguments>();
   add_texture_options(*verb, options->texture);
   add_split_options(*verb, options->split, "the first of 30000, 28500 ... that meets the limits");
   add_axes_options(*verb, options->axes);

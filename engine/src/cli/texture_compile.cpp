@@ -11,13 +11,13 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct TextureCompileArguments {
   FreeformJob job;
   std::vector<std::string> limits;
   std::string output;
 };
 
-Result<int> run(Options options, const Command& command) {
+Result<int> run_texture_compile(TextureCompileArguments options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of(options.job.texture)));
   GRAVURE_CHECK(set_limits(options.limits, options.job.motion));
   return compile_freeform_job(options.job, options.output, {}, command);
@@ -28,7 +28,7 @@ Result<int> run(Options options, const Command& command) {
 void add_texture_compile(CLI::App& texture, Command& command) {
   CLI::App* verb =
       add_verb(texture, command, "compile", "Texture on a surface to program file, all seven axes in time");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TextureCompileArguments>();
   Job& job = options->job.job;
   job.mode = Mode::freeform;
   job.title = "texture";
@@ -51,7 +51,8 @@ void add_texture_compile(CLI::App& texture, Command& command) {
       ->check(integer_from(1, 16))
       ->capture_default_str();
   add_length(*verb, "--landing-um", options->job.split.landing_um, 1e6, "Largest landing error that `verify` allows");
-  verb->callback([&command, options] { command.run = [&command, options] { return run(*options, command); }; });
+  verb->callback(
+      [&command, options] { command.run = [&command, options] { return run_texture_compile(*options, command); }; });
 }
 
 }  // namespace gravure::cli

@@ -5,25 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "path_program.hpp"
 #include "texture_options.hpp"
 
 namespace gravure::cli {
 namespace {
 
-bool turns(std::size_t axis) {
-  return kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
-}
-
-/// What is the same on every machine: nanometres and 1e-6 degrees.
-double rounded(double value) {
-  constexpr double kDigits = 1e6;
-  return std::round(value * kDigits) / kDigits + 0.0;
-}
-
 Json error_json(const texture::FollowingError& error, const std::string& unit, double per_unit, double servo_s) {
-  return {{"max_" + unit, rounded(error.max * per_unit)},
-          {"rms_" + unit, rounded(error.rms * per_unit)},
-          {"at_s", rounded(static_cast<double>(error.instant) * servo_s)}};
+  return {{"max_" + unit, rounded(error.max * per_unit, 6)},
+          {"rms_" + unit, rounded(error.rms * per_unit, 6)},
+          {"at_s", rounded(static_cast<double>(error.instant) * servo_s, 6)}};
 }
 
 std::string error_text(const texture::FollowingError& error, const char* unit, double per_unit, double servo_s) {
@@ -80,8 +71,8 @@ Json following_json(const Following& following, double servo_s) {
              {"natural_hz", following.servos[axis].natural_hz},
              {"damping", following.servos[axis].damping},
              {"assumed", !following.stated[axis]}};
-    one.update(turns(axis) ? error_json(following.errors.axes[axis], "deg", kDegreesPerRad, servo_s)
-                           : error_json(following.errors.axes[axis], "um", kUmPerMm, servo_s));
+    one.update(axis_turns(axis) ? error_json(following.errors.axes[axis], "deg", kDegreesPerRad, servo_s)
+                                : error_json(following.errors.axes[axis], "um", kUmPerMm, servo_s));
     axes.push_back(std::move(one));
   }
   return {{"axes", std::move(axes)},
@@ -93,10 +84,11 @@ std::string following_text(const Following& following, double servo_s) {
   std::string text;
   for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
     const texture::FollowingError& error = following.errors.axes[axis];
-    text += fmt::format(
-        "following     {} {} ({:.6g} Hz, damping {:.6g}{})\n", kPathAxes[axis],
-        turns(axis) ? error_text(error, "deg", kDegreesPerRad, servo_s) : error_text(error, "um", kUmPerMm, servo_s),
-        following.servos[axis].natural_hz, following.servos[axis].damping, following.stated[axis] ? "" : ", assumed");
+    text += fmt::format("following     {} {} ({:.6g} Hz, damping {:.6g}{})\n", kPathAxes[axis],
+                        axis_turns(axis) ? error_text(error, "deg", kDegreesPerRad, servo_s)
+                                         : error_text(error, "um", kUmPerMm, servo_s),
+                        following.servos[axis].natural_hz, following.servos[axis].damping,
+                        following.stated[axis] ? "" : ", assumed");
   }
   text += "following     spot " + error_text(following.errors.spot_mm, "um", kUmPerMm, servo_s) + "\n";
   return text + "following     focus " + error_text(following.errors.focus_mm, "um", kUmPerMm, servo_s) + "\n";

@@ -9,7 +9,6 @@
 namespace gravure::cli {
 namespace {
 
-constexpr double kUsPerS = 1e6;
 constexpr double kPercent = 100;
 
 Result<texture::PathMachine> path_machine_of(const FreeformJob& job) {

@@ -11,6 +11,8 @@
 
 namespace gravure::cli {
 
+inline constexpr double kUsPerS = 1e6;
+
 /// To five digits: what is less of a time or a motion depends on the machine it is reckoned on.
 double five_digits(double value);
 

@@ -22,7 +22,7 @@ CLI::Validator one_of(const std::array<std::string_view, count>& words) {
 }  // namespace
 
 double figure(double value) {
-  return std::round(value * 1e9) / 1e9 + 0.0;
+  return rounded(value, 9);
 }
 
 void add_texture_options(CLI::App& verb, TextureSettings& options) {

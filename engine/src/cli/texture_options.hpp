@@ -23,8 +23,6 @@
 
 namespace gravure::cli {
 
-inline constexpr double kDegreesPerRad = 180 / std::numbers::pi;
-
 /// To 1e-9 of its unit: what is less depends on the compiler.
 double figure(double value);
 

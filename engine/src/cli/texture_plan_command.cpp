@@ -13,9 +13,7 @@
 namespace gravure::cli {
 namespace {
 
-constexpr double kUsPerS = 1e6;
-
-struct Options {
+struct TexturePlanArguments {
   FreeformJob job;
   std::vector<std::string> limits;
   ServoOptions servos;
@@ -24,7 +22,7 @@ struct Options {
   std::int64_t every = 20;
 };
 
-Result<void> write_trajectory(const Options& options, const PathMotion& motion) {
+Result<void> write_trajectory(const TexturePlanArguments& options, const PathMotion& motion) {
   constexpr std::int64_t kBlock = 16'384;
   GRAVURE_TRY(TextOutput output, TextOutput::create(options.trajectory));
   output.text() += "t_s,X,Y,Z,A,C,U,V,along_mm\n";
@@ -63,7 +61,7 @@ Result<texture::TimedPath> time_stages(const TimedTexture& seven) {
 }
 
 /// Each figure to what is the same on every machine.
-void print_outcome(const Options& options, const TimedTexture& seven, const texture::TimedPath& five,
+void print_outcome(const TexturePlanArguments& options, const TimedTexture& seven, const texture::TimedPath& five,
                    const Following& following, const std::vector<std::string>& violations, const Command& command) {
   const texture::TimedPath& path = seven.proven.path;
   const double ratio = five.time_s / path.time_s;
@@ -93,7 +91,7 @@ void print_outcome(const Options& options, const TimedTexture& seven, const text
   print(text);
 }
 
-Result<int> plan(Options options, const Command& command) {
+Result<int> plan(TexturePlanArguments options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite({{"--points", options.points}, {"--trajectory", options.trajectory}},
                                  inputs_of(options.job.texture)));
   GRAVURE_CHECK(set_limits(options.limits, options.job.motion));
@@ -116,7 +114,7 @@ Result<int> plan(Options options, const Command& command) {
 
 void add_texture_plan(CLI::App& texture, Command& command) {
   CLI::App* verb = add_verb(texture, command, "plan", "Time a path on a surface under the limits of all seven axes");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TexturePlanArguments>();
   add_texture_options(*verb, options->job.texture);
   add_split_options(*verb, options->job.split, "by --rule");
   add_axes_options(*verb, options->job.axes);

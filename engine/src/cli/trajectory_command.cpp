@@ -15,9 +15,7 @@
 namespace gravure::cli {
 namespace {
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
-
-struct Options {
+struct TrajectoryArguments {
   std::string program;
   std::int64_t revolution = 0;
   std::int64_t line = 0;
@@ -39,14 +37,14 @@ Result<std::vector<std::byte>> bits_of_line(LineSource& program, const scan::Lin
 }
 
 /// To 1e-9 of the unit, no negative zero: the same text from every compiler.
-std::string figure(double value) {
-  return fmt::format("{:.9f}", std::round(value * 1e9) / 1e9 + 0.0);
+std::string decimals(double value) {
+  return fmt::format("{:.9f}", rounded(value, 9));
 }
 
 /// What the slots of a line print, row by row.
 class Rows {
  public:
-  static Result<Rows> of(const Options& options, ProgramTrajectory& opened) {
+  static Result<Rows> of(const TrajectoryArguments& options, ProgramTrajectory& opened) {
     Rows rows(opened.trajectory, {options.revolution, options.line});
     GRAVURE_TRY(rows.bits_, bits_of_line(*opened.program, rows.number_));
     const scan::LineTrajectory& line = opened.trajectory.of_revolution(options.revolution);
@@ -68,10 +66,11 @@ class Rows {
   Result<std::string> row(std::int64_t slot) const {
     GRAVURE_TRY(const scan::SlotState state, trajectory_.at(number_, slot, model_));
     const bool flat = plan().mode == Mode::flat;
-    const double first = flat ? state.joints[0] : state.joints[0] * kDegrees;
-    return fmt::format("{},{},{},{},{},{},{},{},{},{}", slot, state.tick, figure(state.mirrors.u_mm),
-                       figure(state.mirrors.v_mm), figure(first), figure(state.joints[1]), figure(state.spot_mm.x()),
-                       figure(state.spot_mm.y()), figure(state.spot_mm.z()), fires(slot) ? 1 : 0);
+    const double first = flat ? state.joints[0] : state.joints[0] * kDegreesPerRad;
+    return fmt::format("{},{},{},{},{},{},{},{},{},{}", slot, state.tick, decimals(state.mirrors.u_mm),
+                       decimals(state.mirrors.v_mm), decimals(first), decimals(state.joints[1]),
+                       decimals(state.spot_mm.x()), decimals(state.spot_mm.y()), decimals(state.spot_mm.z()),
+                       fires(slot) ? 1 : 0);
   }
 
  private:
@@ -115,8 +114,8 @@ Result<void> write_csv(const Rows& rows, const Write& write) {
 }
 
 /// The same rows as arrays, written one by one: a line may have millions of slots.
-Result<void> write_json(const Rows& rows, const Options& options, const scan::LineTrajectory& line, bool reverse,
-                        const Write& write) {
+Result<void> write_json(const Rows& rows, const TrajectoryArguments& options, const scan::LineTrajectory& line,
+                        bool reverse, const Write& write) {
   std::string head = Json{{"revolution", options.revolution},
                           {"line", options.line},
                           {"direction", direction_name(reverse)},
@@ -132,7 +131,7 @@ Result<void> write_json(const Rows& rows, const Options& options, const scan::Li
   return write("  ]\n}\n");
 }
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_trajectory(const TrajectoryArguments& options, const Command& command) {
   GRAVURE_TRY(ProgramTrajectory opened, open_trajectory(options.program));
   const Plan& plan = opened.trajectory.plan();
   GRAVURE_CHECK(check_index("--revolution", options.revolution, plan.job.revolutions));
@@ -186,7 +185,7 @@ void add_trajectory(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "trajectory",
                             "Where mirrors, axes and spot are in every pulse slot of a line, as CSV: slot, tick of the "
                             "job, U, V, axis positions, spot on the workpiece, fired");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TrajectoryArguments>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
   verb->add_option("--line", options->line, "Line of the revolution, from 0")
       ->required()
@@ -202,7 +201,7 @@ void add_trajectory(CLI::App& app, Command& command) {
       if (options->csv && command.json) {
         return Error{ErrorCode::bad_argument, "--csv and --json: give one of them"};
       }
-      return run(*options, command);
+      return run_trajectory(*options, command);
     };
   });
 }

@@ -20,7 +20,7 @@
 namespace gravure::cli {
 namespace {
 
-struct Options {
+struct UnrollArguments {
   std::string program;
   std::optional<std::int64_t> revolution;  // this, or
   std::optional<std::int64_t> layer;       // this one
@@ -53,7 +53,7 @@ TiffCompression compression_of_source(const std::string& path, std::int64_t page
 }
 
 /// Where the picture comes from, unless what is asked for is not there.
-std::optional<LayerOrigin> picture_origin(const ProgramHeader& header, const Options& options) {
+std::optional<LayerOrigin> picture_origin(const ProgramHeader& header, const UnrollArguments& options) {
   const bool helical = header.plan.carriage.has_value();
   if (options.layer) {
     const bool there = *options.layer >= 0 && *options.layer < image_layers(header);
@@ -67,7 +67,7 @@ std::optional<LayerOrigin> picture_origin(const ProgramHeader& header, const Opt
 
 /// The size tags and the photometric sense of the source, where it is still there, so that the picture equals a layer
 /// written the same way; else its size on the workpiece.
-Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& options, const UnrolledSize& size,
+Result<BilevelTiffPage> page_of(const ProgramHeader& header, const UnrollArguments& options, const UnrolledSize& size,
                                 const SourceImage* source) {
   const double along = 1000.0 / to_double(header.plan.line.pixel_pitch_um);
   const double across = 1000.0 / to_double(header.plan.rotary.line_pitch_um);
@@ -97,7 +97,7 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const Options& opti
 }
 
 /// What a bitmap on a surface comes back as; bad_argument for a path that is none.
-Result<BilevelTiffPage> path_page_of(const ProgramHeader& header, const Options& options) {
+Result<BilevelTiffPage> path_page_of(const ProgramHeader& header, const UnrollArguments& options) {
   const std::optional<PathPicture>& picture = header.plan.path->picture;
   if (!picture || header.plan.rotary.line_pitch_um <= 0) {
     return Error{ErrorCode::bad_argument, "the program marks a path, not a picture: see verify"};
@@ -122,7 +122,7 @@ Result<void> check_name(const std::string& output) {
                                             " and convert it with another program"};
 }
 
-Result<int> run(const Options& options, const Command& command) {
+Result<int> run_unroll(const UnrollArguments& options, const Command& command) {
   GRAVURE_CHECK(check_name(options.output));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
@@ -183,7 +183,7 @@ Result<int> run(const Options& options, const Command& command) {
 void add_unroll(CLI::App& app, Command& command) {
   CLI::App* verb =
       add_verb(app, command, "unroll", "What one revolution or layer exposes, as the picture it came from");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<UnrollArguments>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
   CLI::Option* revolution =
       verb->add_option("--revolution", options->revolution, "Revolution (flat: pass), from 0; not in helical programs")
@@ -201,7 +201,7 @@ void add_unroll(CLI::App& app, Command& command) {
     if (!options->revolution && !options->layer) {
       throw CLI::RequiredError("--revolution or --layer");
     }
-    command.run = [&command, options] { return run(*options, command); };
+    command.run = [&command, options] { return run_unroll(*options, command); };
   });
 }
 

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 
 #include "log.hpp"
@@ -54,6 +55,15 @@ Result<Rational> decimal_option(const std::string& option, const std::string& te
 
 void print(const std::string& text) {
   static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout));
+}
+
+Result<void> check_not_stopped() {
+  return cancel_token().cancelled() ? Error{ErrorCode::cancelled, "stopped; nothing was written"} : Result<void>();
+}
+
+double rounded(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale + 0.0;
 }
 
 void print_json(const Json& document) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,11 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr int kDone = 0;
 inline constexpr int kLimitViolated = 1;
+
+inline constexpr double kDegreesPerRad = 180 / std::numbers::pi;
+
+/// To so many decimals, without negative zero: what is less depends on the compiler.
+double rounded(double value, int decimals);
 
 /// What the command line asked for: each verb fills in `run`, main() calls it. Standard output belongs to the result
 /// (one JSON document with --json), standard error to everything else.
@@ -55,6 +61,8 @@ Json json_ratio(const Rational& value);
 
 /// Set by Ctrl-C. Asking for it says that somebody will look at it from now on.
 CancelToken& cancel_token();
+/// cancelled, once somebody stopped a verb that writes at its end.
+Result<void> check_not_stopped();
 /// From now on interrupt() owes standard output a document.
 void promise_json();
 /// What Ctrl-C does: sets the token where somebody looks at it, else ends the program with the status of `cancelled`.

@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct VerifyArguments {
   std::string input;
   std::string images;
   std::string html;
@@ -153,7 +153,7 @@ std::string text_of(const VerifyReport& report, const ProgramHeader& header, boo
 }
 
 /// `--html`: written whatever the verdict.
-Result<void> write_page(const std::string& path, VerifiedProgram verified, const Options& options,
+Result<void> write_page(const std::string& path, VerifiedProgram verified, const VerifyArguments& options,
                         const Command& command) {
   GRAVURE_CHECK(refuse_overwrite(options.html, {path, options.input}));
   ReportRequest request;
@@ -164,7 +164,7 @@ Result<void> write_page(const std::string& path, VerifiedProgram verified, const
   return {};
 }
 
-Result<int> verify_program(const std::string& path, const Options& options, const Command& command) {
+Result<int> verify_program(const std::string& path, const VerifyArguments& options, const Command& command) {
   {
     GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
     if (program->header().plan.path) {
@@ -226,7 +226,7 @@ class TemporaryFolder {
   std::string path_;
 };
 
-Result<int> verify_job(const Options& options, const Command& command) {
+Result<int> verify_job(const VerifyArguments& options, const Command& command) {
   cancel_token();  // before there is a folder: from here on Ctrl-C takes it away again
   const TemporaryFolder folder;
   if (folder.path().empty()) {
@@ -251,7 +251,7 @@ Result<int> verify_job(const Options& options, const Command& command) {
 void add_verify(CLI::App& app, Command& command) {
   CLI::App* verb =
       add_verb(app, command, "verify", "Emulate a job or program, compare with its images, judge seam and landing");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<VerifyArguments>();
   verb->add_option("JOB|PROGRAM", options->input, "Job file (TOML) or program file (.grv)")->required();
   verb->add_option("--images", options->images, "Folder with the images, where they are not at the job's paths");
   verb->add_flag("--every-revolution", options->every_revolution, "List the seam after each revolution, not only some");

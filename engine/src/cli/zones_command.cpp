@@ -20,7 +20,7 @@ namespace {
 using zones::PlannedZone;
 using zones::ZonePlan;
 
-struct Options {
+struct ZonesArguments {
   std::string contours;
   std::string transform;
   std::string method = "cover";
@@ -85,7 +85,7 @@ Json zone_json(const kinematics::Machine& machine, const std::vector<Contour>& c
           {"layers", layers}};
 }
 
-Json plan_json(const Options& options, const zones::ZonePlanRequest& request, const ZonePlan& plan) {
+Json plan_json(const ZonesArguments& options, const zones::ZonePlanRequest& request, const ZonePlan& plan) {
   Json zones = Json::array();
   for (const PlannedZone& zone : plan.zones) {
     zones.push_back(zone_json(request.machine, request.contours, plan, zone));
@@ -131,7 +131,7 @@ std::string plan_text(const zones::ZonePlanRequest& request, const ZonePlan& pla
   return text;
 }
 
-Result<int> plan_contours(const Options& options, const Command& command) {
+Result<int> plan_contours(const ZonesArguments& options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite({{"--plot", options.plot}}, {options.contours, options.transform, options.machine}));
   if (options.method == "cover" && (options.k > 0 || options.not_normalised)) {
     return Error{ErrorCode::bad_argument, "--k and --not-normalised belong to --method kmeans"};
@@ -157,7 +157,7 @@ Result<int> plan_contours(const Options& options, const Command& command) {
 
 void add_plan_verb(CLI::App& parent, Command& command) {
   CLI::App* verb = add_verb(parent, command, "plan", "Contours -> zones, layers and stage positions");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ZonesArguments>();
   verb->add_option("contours", options->contours, "Contours as JSON or CSV")->required();
   verb->add_option("--transform", options->transform, "Where the part is: JSON with transform[4][4]");
   verb->add_option("--method", options->method, "cover: the fewest zones; kmeans: the published way")

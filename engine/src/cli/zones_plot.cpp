@@ -6,22 +6,23 @@
 #include <array>
 #include <numbers>
 
+#include "verb.hpp"
+
 namespace gravure::cli {
 namespace {
 
 using zones::Vector3;
 
 constexpr double kSide = 420;
-constexpr double kMargin = 40;
+constexpr double kPlotMargin = 40;
 constexpr double kTop = 50;
 constexpr double kRow = 16;
-constexpr double kDegrees = 180 / std::numbers::pi;
 /// Different also to most people who see colours differently.
-constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                              "#e69f00", "#56b4e9", "#000000", "#999933"};
+constexpr std::array<const char*, 8> kZoneColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                  "#e69f00", "#56b4e9", "#000000", "#999933"};
 
 const char* colour_of(std::size_t zone) {
-  return kColours[zone % kColours.size()];
+  return kZoneColours[zone % kZoneColours.size()];
 }
 
 /// From the part to pixels, with one axis to the right and z up.
@@ -84,22 +85,22 @@ std::string zones_to_svg(const zones::ZonePlan& plan, const std::string& title) 
   const double range = std::max((most - least).maxCoeff(), 1e-6);
   const double scale = kSide / (1.2 * range);
   const Vector3 corner = (least + most) / 2 - Vector3::Constant(0.6 * range);
-  const double width = 2 * kSide + 3 * kMargin;
+  const double width = 2 * kSide + 3 * kPlotMargin;
   const double height = kTop + kSide + 30 + kRow * static_cast<double>(plan.zones.size() + 1);
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
       "<text x=\"{2}\" y=\"22\" font-size=\"14\">{3}: {4} zones, at least {5}</text>\n",
-      width, height, kMargin, escaped(title), plan.zones.size(), plan.lower_bound);
-  svg += draw(plan, {0, corner, scale, kMargin}, "x to the right, z up");
-  svg += draw(plan, {1, corner, scale, 2 * kMargin + kSide}, "y to the right, z up");
+      width, height, kPlotMargin, escaped(title), plan.zones.size(), plan.lower_bound);
+  svg += draw(plan, {0, corner, scale, kPlotMargin}, "x to the right, z up");
+  svg += draw(plan, {1, corner, scale, 2 * kPlotMargin + kSide}, "y to the right, z up");
   double line = kTop + kSide + 24;
   for (std::size_t z = 0; z < plan.zones.size(); ++z) {
     const zones::PlannedZone& zone = plan.zones[z];
     svg += fmt::format(
         "<text x=\"{}\" y=\"{}\" fill=\"{}\">zone {}: {} contours, incidence {:.2f} deg, {} layers of {:.3f} "
         "mm</text>\n",
-        kMargin, line, colour_of(z), z, zone.zone.pieces.size(), zone.zone.max_incidence_rad * kDegrees,
+        kPlotMargin, line, colour_of(z), z, zone.zone.pieces.size(), zone.zone.max_incidence_rad * kDegreesPerRad,
         zone.layers.size(), zone.layer_thickness_mm);
     line += kRow;
   }
