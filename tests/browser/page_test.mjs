@@ -1,6 +1,6 @@
-// node page_test.mjs CHROMIUM FOLDER SHOTS: opens good.html and bad.html of FOLDER from disk.
+// node page_test.mjs CHROMIUM FOLDER SHOTS: opens good.html, bad.html and path.html of FOLDER from disk.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -21,7 +21,7 @@ const check = (what, condition) => {
 };
 
 /** Opens a page and collects whatever it complains of or asks the network for. */
-async function open(context, name) {
+async function open(context, name, layers = true) {
   const page = await context.newPage();
   const troubles = [];
   page.on('console', (message) => {
@@ -37,7 +37,7 @@ async function open(context, name) {
   });
   await page.goto(pathToFileURL(join(folder, name)).href, waiting);
   await page.waitForSelector('html[data-ready=true]', { state: 'attached', ...waiting });
-  await page.evaluate(() => gravure.layers.ready);
+  if (layers) await page.evaluate(() => gravure.layers.ready);
   return { page, troubles };
 }
 
@@ -131,13 +131,52 @@ async function badPage(context, shot) {
   await page.close();
 }
 
+/** What a build without Node writes: the same page with nothing in the script of the 3-D view. */
+async function plainPage(context, shot) {
+  const parts = readFileSync(join(folder, 'good.html'), 'utf8').split('<script>');
+  check('the bundle stands in a script of its own', parts.length === 3);
+  parts[1] = '\n</script>\n';
+  writeFileSync(join(folder, 'plain.html'), parts.join('<script>'));
+  const { page, troubles } = await open(context, 'plain.html');
+  check('a build without the 3-D view says so', (await page.textContent('#no-3d')).includes('no 3-D view'));
+  check('everything else is there', (await colours(page, '#layers-canvas')) > 2 && (await page.locator('#seam path.seam').count()) === 1 && (await page.locator('#sources-table tbody tr').count()) > 0);
+  await page.screenshot({ path: join(shots, `${shot}.png`), fullPage: true });
+  assert.deepEqual(troubles, [], 'the page complained');
+  checks += 1;
+  await page.close();
+}
+
+/** A program that follows a path, with a landing beyond its limit. */
+async function pathPage(context, shot) {
+  const { page, troubles } = await open(context, 'path.html', false);
+  const data = await page.evaluate(() => gravure.data);
+  check('the path is not within limits', (await page.textContent('#verdict')).includes('Not within limits'));
+  check('its violation is said once', (await page.locator('#verdict ol > li').count()) === 1 && data.verdict.violations.length === 1);
+  check('its title is text', (await page.textContent('h1')) === '<b>path</b>');
+  check('every figure has its bar, one of them beyond the limit', (await page.locator('#figure-bars .track').count()) === data.figures.length && (await page.locator('#figure-bars .over').count()) === 1);
+  check('the pulses are on the surface', (await colours(page, '#map-canvas')) > 2);
+  const pulses = await picture(page, '#map-canvas');
+  await page.selectOption('#map-what', 'heights');
+  check('the surface is shown instead', (await picture(page, '#map-canvas')) !== pulses);
+  check('seven axes are drawn over time', (await page.locator('#traces path.band').count()) === 7 && (await page.locator('#axis-table tbody tr').count()) === 7);
+  check('what does not apply is said', (await page.locator('#absent li').count()) > 3);
+  const wider = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  check(`the page of the path is ${wider} pixels wider than the screen`, wider <= 0);
+  await page.screenshot({ path: join(shots, `${shot}.png`), fullPage: true });
+  assert.deepEqual(troubles, [], 'the page complained');
+  checks += 1;
+  await page.close();
+}
+
 let browser;
 try {
   for (const [name, viewport, colorScheme] of [['wide', { width: 1280, height: 800 }, 'light'], ['phone', { width: 390, height: 844 }, 'dark']]) {
     browser = await chromium.launchPersistentContext(join(profile, name), { executablePath, headless: true, args, viewport, colorScheme });
     await goodPage(browser, `good_${name}`);
     await badPage(browser, `bad_${name}`);
+    await pathPage(browser, `path_${name}`);
     if (name === 'wide') {
+      await plainPage(browser, 'plain_wide');
       const { page } = await open(browser, 'good.html');
       await page.pdf({ path: join(shots, 'good.pdf'), format: 'A4', printBackground: true });
       await page.close();

@@ -150,15 +150,22 @@ Result<int> compile_freeform_job(const FreeformJob& job, const std::string& outp
   return kDone;
 }
 
-Result<int> verify_path_file(const std::string& path, const std::string& folder, const Command& command) {
-  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
-  GRAVURE_TRY(const Evidence evidence, evidence_of(program->header(), path, folder));
+Result<PathReport> judge_path_file(LineSource& program, const std::string& path, const std::string& folder,
+                                   const std::function<Result<void>(const LandedPulse&)>& landed) {
+  GRAVURE_TRY(const Evidence evidence, evidence_of(program.header(), path, folder));
   VerifyPathOptions options;
+  options.landed = landed;
   if (evidence.wanted) {
     options.wanted = &evidence.wanted->pulses;
     options.targets = evidence.wanted->targets;
   }
-  return verify_path_program(*program, options, evidence.violations, evidence.notes, command);
+  return judge_path_program(program, options, evidence.violations, evidence.notes);
+}
+
+Result<int> verify_path_file(const std::string& path, const std::string& folder, const Command& command) {
+  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
+  GRAVURE_TRY(const PathReport report, judge_path_file(*program, path, folder));
+  return print_path_report(report, command);
 }
 
 }  // namespace gravure::cli

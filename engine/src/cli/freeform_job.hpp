@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "gravure/core/program.hpp"
 #include "gravure/formats/freeform_job.hpp"
 #include "gravure/formats/grv.hpp"
+#include "gravure/twin/verify_path.hpp"
 #include "verb.hpp"
 
 // Jobs of mode "freeform", as `plan`, `compile` and `verify` take them.
@@ -21,6 +23,10 @@ Result<int> plan_freeform_job(const std::string& path, const Command& command);
 /// `compile JOB` and `texture compile`, which says what a job would.
 Result<int> compile_freeform_job(const FreeformJob& job, const std::string& output, const GrvOptions& grv,
                                  const Command& command);
+
+/// Judges a program that follows a path, as `verify` does; `landed` is told of every pulse.
+Result<PathReport> judge_path_file(LineSource& program, const std::string& path, const std::string& folder,
+                                   const std::function<Result<void>(const LandedPulse&)>& landed = {});
 
 /// `verify PROGRAM` of one that was made from a freeform job, with what the job asks for where its sources are at hand,
 /// and of any other that follows a path. Sources are sought at the job's paths, or below `folder`.

@@ -98,9 +98,9 @@ bool axis_turns(std::size_t axis) {
   return kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
 }
 
-Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& given,
-                                const std::vector<std::string>& violations, const std::vector<std::string>& notes,
-                                const Command& command) {
+Result<PathReport> judge_path_program(LineSource& program, const VerifyPathOptions& given,
+                                      const std::vector<std::string>& violations,
+                                      const std::vector<std::string>& notes) {
   VerifyPathOptions options = given;
   options.cancel = &cancel_token();
   PathPulses all;
@@ -116,6 +116,10 @@ Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& gi
   GRAVURE_TRY(PathReport report, std::move(judged));
   report.violations.insert(report.violations.begin(), violations.begin(), violations.end());
   report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
+  return report;
+}
+
+int print_path_report(const PathReport& report, const Command& command) {
   if (command.json) {
     print_json(json_of(report));
   } else {

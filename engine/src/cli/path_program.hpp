@@ -13,10 +13,14 @@ namespace gravure::cli {
 /// A and C of kPathAxes, not the others.
 bool axis_turns(std::size_t axis);
 
-/// What `verify` does with a program that follows a path; `violations` and `notes` are what is known of it already.
-Result<int> verify_path_program(LineSource& program, const VerifyPathOptions& options,
-                                const std::vector<std::string>& violations, const std::vector<std::string>& notes,
-                                const Command& command);
+/// Judges a program that follows a path, with a bar of progress; `violations` and `notes` are what is known of it
+/// already and come first.
+Result<PathReport> judge_path_program(LineSource& program, const VerifyPathOptions& options,
+                                      const std::vector<std::string>& violations,
+                                      const std::vector<std::string>& notes);
+
+/// Prints what was found, as `verify` does; the exit status.
+int print_path_report(const PathReport& report, const Command& command);
 
 /// What `unroll` does with a picture on a surface: every pulse that fired, put on the workpiece and projected back
 /// along z, into a page of the picture's size.

@@ -2,6 +2,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "gravure/formats/grv.hpp"
 #include "program_files.hpp"
@@ -17,6 +20,15 @@ struct ReportArguments {
   std::string images;
 };
 
+std::string verdict_text(const std::string& page, std::int64_t bytes, const char* without,
+                         const std::vector<std::string>& violations) {
+  std::string text = fmt::format("{}: {:.2f} MB{}\n", page, static_cast<double>(bytes) / 1e6, without);
+  for (const std::string& violation : violations) {
+    text += "violation: " + violation + "\n";
+  }
+  return text + (violations.empty() ? "within limits\n" : "NOT within limits\n");
+}
+
 /// Before the work of verifying: is there such a line?
 Result<void> check_line(const ReportRequest& request) {
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(request.program));
@@ -26,9 +38,43 @@ Result<void> check_line(const ReportRequest& request) {
   return check_index("--line", request.line.value_or(0), plan.rotary.lines_per_revolution);
 }
 
+/// The page of a program that follows a path; nullopt: it follows none.
+Result<std::optional<int>> run_path_report(const ReportArguments& options, const Command& command) {
+  const ReportRequest& request = options.request;
+  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(request.program));
+  if (!program->header().plan.path) {
+    return std::optional<int>();
+  }
+  if (request.line || request.revolution != 0) {
+    return Error{ErrorCode::bad_argument,
+                 request.program +
+                     ": follows a path: it has no revolutions and lines to show; leave --revolution and "
+                     "--line out"};
+  }
+  GRAVURE_TRY(const WrittenPathReport written, write_path_report(request, *program, options.images));
+  const std::vector<std::string>& violations = written.verified.violations;
+  if (command.json) {
+    print_json({{"page", request.output},
+                {"bytes", written.bytes},
+                {"within_limits", violations.empty()},
+                {"violations", violations},
+                {"revolution", nullptr},
+                {"line", nullptr},
+                {"shown_layers", nullptr},
+                {"view_3d", false}});
+  } else {
+    print(verdict_text(request.output, written.bytes, "", violations));
+  }
+  return std::optional<int>(violations.empty() ? kDone : kLimitViolated);
+}
+
 Result<int> run_report(const ReportArguments& options, const Command& command) {
   const ReportRequest& request = options.request;
   GRAVURE_CHECK(refuse_overwrite(request.output, {request.program}));
+  GRAVURE_TRY(const std::optional<int> of_path, run_path_report(options, command));
+  if (of_path) {
+    return *of_path;
+  }
   GRAVURE_CHECK(check_line(request));
   GRAVURE_TRY(VerifiedProgram verified, verify_program_file(request.program, options.images, command));
   const std::vector<std::string> violations = verified.report.violations;
@@ -43,12 +89,8 @@ Result<int> run_report(const ReportArguments& options, const Command& command) {
                 {"shown_layers", written.shown_layers},
                 {"view_3d", written.view_3d}});
   } else {
-    std::string text = fmt::format("{}: {:.2f} MB{}\n", request.output, static_cast<double>(written.bytes) / 1e6,
-                                   written.view_3d ? "" : ", without the 3-D view (built without Node)");
-    for (const std::string& violation : violations) {
-      text += "violation: " + violation + "\n";
-    }
-    print(text + (violations.empty() ? "within limits\n" : "NOT within limits\n"));
+    print(verdict_text(request.output, written.bytes,
+                       written.view_3d ? "" : ", without the 3-D view (built without Node)", violations));
   }
   return violations.empty() ? kDone : kLimitViolated;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "freeform_job.hpp"
 #include "gravure/core/file_output.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/report_page.hpp"
@@ -13,7 +14,7 @@ namespace gravure::cli {
 Result<void> check_drawable(const ProgramHeader& header, const std::string& path) {
   if (header.plan.path) {
     return Error{ErrorCode::bad_argument,
-                 path + ": follows a path; report and preview draw revolutions and passes: see verify --json"};
+                 path + ": follows a path; revolutions and passes are drawn here: see gravure report"};
   }
   if (header.shard) {
     return Error{ErrorCode::bad_argument, path + ": is a part of a job: merge the parts first (gravure merge)"};
@@ -56,6 +57,25 @@ Result<WrittenReport> write_report(const ReportRequest& request, VerifiedProgram
                                        [](const report::LayerPicture& layer) { return !layer.shares.empty(); });
   written.view_3d = report_has_3d();
   return written;
+}
+
+Result<WrittenPathReport> write_path_report(const ReportRequest& request, LineSource& program,
+                                            const std::string& folder) {
+  constexpr std::size_t kStretches = 600;
+  report::PathReportData data;
+  data.generator = std::string("gravure ") + GRAVURE_VERSION;
+  data.program = request.name;
+  data.header = &program.header();
+  const auto landed = [&data](const LandedPulse& pulse) -> Result<void> {
+    const kinematics::Vector3& at = pulse.spot.position_mm;
+    data.map.take(at.x(), at.y(), at.z());
+    return {};
+  };
+  GRAVURE_TRY(data.verified, judge_path_file(program, request.program, folder, landed));
+  GRAVURE_TRY(data.traces, report::path_traces(program, kStretches, &cancel_token()));
+  GRAVURE_TRY(const std::string page, path_report_page(data));
+  GRAVURE_CHECK(write_file(request.output, page));
+  return WrittenPathReport{std::move(data.verified), static_cast<std::int64_t>(page.size())};
 }
 
 }  // namespace gravure::cli

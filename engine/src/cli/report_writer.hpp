@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "gravure/twin/verify_path.hpp"
 #include "program_verification.hpp"
 #include "verb.hpp"
 
@@ -24,6 +25,14 @@ struct WrittenReport {
   std::int64_t shown_layers = 0;
   bool view_3d = false;
 };
+
+struct WrittenPathReport {
+  PathReport verified;
+  std::int64_t bytes = 0;
+};
+/// Judges a program that follows a path, its job's files sought below `folder` too, and writes its page.
+Result<WrittenPathReport> write_path_report(const ReportRequest& request, LineSource& program,
+                                            const std::string& folder);
 
 /// Fails with bad_argument where a program cannot be drawn: one that follows a path, or a shard.
 Result<void> check_drawable(const ProgramHeader& header, const std::string& path);

@@ -21,6 +21,7 @@
 #include "gravure/twin/unroll.hpp"
 #include "gravure/twin/verify.hpp"
 #include "job_loader.hpp"
+#include "path_program.hpp"
 #include "program_files.hpp"
 #include "program_verification.hpp"
 #include "report_writer.hpp"
@@ -152,15 +153,19 @@ std::string text_of(const VerifyReport& report, const ProgramHeader& header, boo
   return text;
 }
 
-/// `--html`: written whatever the verdict.
-Result<void> write_page(const std::string& path, VerifiedProgram verified, const VerifyArguments& options,
-                        const Command& command) {
-  GRAVURE_CHECK(refuse_overwrite(options.html, {path, options.input}));
+ReportRequest page_request(const std::string& path, const VerifyArguments& options) {
   ReportRequest request;
   request.program = path;
   request.name = fs::path(options.input).filename().string();
   request.output = options.html;
-  GRAVURE_CHECK(write_report(request, std::move(verified), command));
+  return request;
+}
+
+/// `--html`: written whatever the verdict.
+Result<void> write_page(const std::string& path, VerifiedProgram verified, const VerifyArguments& options,
+                        const Command& command) {
+  GRAVURE_CHECK(refuse_overwrite(options.html, {path, options.input}));
+  GRAVURE_CHECK(write_report(page_request(path, options), std::move(verified), command));
   return {};
 }
 
@@ -169,7 +174,10 @@ Result<int> verify_program(const std::string& path, const VerifyArguments& optio
     GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
     if (program->header().plan.path) {
       if (!options.html.empty()) {
-        return Error{ErrorCode::bad_argument, "--html: a program that follows a path has no page; leave it out"};
+        GRAVURE_CHECK(refuse_overwrite(options.html, {path, options.input}));
+        GRAVURE_TRY(const WrittenPathReport written,
+                    write_path_report(page_request(path, options), *program, options.images));
+        return print_path_report(written.verified, command);
       }
       return verify_path_file(path, options.images, command);
     }

@@ -1,45 +1,7 @@
 'use strict';
-// Verdict, figures, job, workpiece, sources; then every part once.
+// Figures, job, workpiece, sources; then every part once.
 
-/** What to do about a violation, by what it is about. The message itself says where and how much. */
-gravure.remedy = (violation) => {
-  const rules = [
-    [/not compared|cannot be read|not found|no images/i, 'Give the folder with the images by --images, or put them back, and verify again.'],
-    [/wrong pixel|differ/i, 'The images are not those that were compiled: compile the job again, or look for a damaged file.'],
-    [/seam_um/i, 'gravure suggest lists nearby jobs that close exactly; fpga.fractional = true closes every job.'],
-    [/landing_um/i, 'The error budget below shows which cause is largest; docs/error_budget.md says what lowers it.'],
-    [/compile/i, 'Compile the job again with this version.'],
-  ];
-  const found = rules.find(([pattern]) => pattern.test(violation));
-  return found ? found[1] : null;
-};
-
-gravure.verdict = () => {
-  const { verdict, job } = gravure.data;
-  const { element, grouped } = gravure;
-  const place = gravure.at('verdict');
-  const good = verdict.within_limits;
-  place.classList.toggle('bad', !good);
-  place.append(element('div', { class: 'word' }, good ? '✓ Within limits' : '✗ Not within limits'));
-  if (good) {
-    place.append(element('p', { class: 'say' }, `All ${grouped(verdict.lines)} lines were run on the emulated board and put back onto the workpiece: every pixel is where the images have it.`));
-  } else {
-    const list = element('ol');
-    for (const violation of verdict.violations) {
-      const item = element('li', {}, violation);
-      const todo = gravure.remedy(violation);
-      if (todo) item.append(element('span', { class: 'todo' }, todo));
-      list.append(item);
-    }
-    place.append(element('p', { class: 'say' }, verdict.violations.length === 1 ? 'Do not cut before this is solved:' : `Do not cut before these ${verdict.violations.length} are solved:`), list);
-  }
-  const remarks = [...verdict.notes, ...job.warnings];
-  if (remarks.length) {
-    const list = element('ul');
-    for (const remark of remarks) list.append(element('li', {}, remark));
-    place.append(element('details', { open: remarks.length < 4 }, element('summary', {}, `${remarks.length} remark${remarks.length === 1 ? '' : 's'} that do${remarks.length === 1 ? 'es' : ''} not block`), list));
-  }
-};
+gravure.allGood = () => `All ${gravure.grouped(gravure.data.verdict.lines)} lines were run on the emulated board and put back onto the workpiece: every pixel is where the images have it.`;
 
 gravure.dpi = (um) => `${gravure.number(25400 / um, 5)} DPI`;
 

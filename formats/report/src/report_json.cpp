@@ -5,28 +5,12 @@
 
 #include "gravure/formats/png_writer.hpp"
 #include "gravure/formats/report_page.hpp"
+#include "json_parts.hpp"
 
 namespace gravure {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using report::Extent;
-
-/// A figure, and what it is exactly where a person can read that: a circumference from pi has hundreds of digits.
-Json json_of(const Rational& value) {
-  constexpr std::size_t kReadable = 40;
-  const std::string exact = to_string(value);
-  return {{"value", to_double(value)}, {"exact", exact.size() <= kReadable ? Json(exact) : Json(nullptr)}};
-}
-
-/// Ten digits: what a page shows, and the same from every mathematical library.
-double figure(double value) {
-  if (value == 0 || !std::isfinite(value)) {
-    return 0;
-  }
-  const double scale = std::pow(10.0, 9 - std::floor(std::log10(std::abs(value))));
-  return std::isfinite(scale) && scale != 0 ? std::round(value * scale) / scale : value;
-}
 
 Json png_of(std::span<const std::byte> pixels, const Extent& extent, Result<void>& failed) {
   const Result<std::string> png = encode_png({extent.width, extent.height, 1, pixels});
@@ -35,18 +19,6 @@ Json png_of(std::span<const std::byte> pixels, const Extent& extent, Result<void
     return nullptr;
   }
   return base64(png.value());
-}
-
-/// Values of 0 to `most` as 16 bits each, little-endian, in base64.
-std::string sixteen_bits(const std::vector<double>& values, double most) {
-  std::string bytes;
-  bytes.reserve(2 * values.size());
-  for (const double value : values) {
-    const auto level = static_cast<unsigned>(most > 0 ? std::lround(65535 * std::min(value / most, 1.0)) : 0);
-    bytes += static_cast<char>(level & 0xFFU);
-    bytes += static_cast<char>(level >> 8U);
-  }
-  return base64(bytes);
 }
 
 Json job_json(const report::ReportData& data) {

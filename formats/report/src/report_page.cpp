@@ -22,13 +22,40 @@ std::string script_safe(std::string_view json) {
 }
 
 /// What stands on the page where scripts are not run.
-std::string plain_verdict(const report::ReportData& data) {
-  const std::vector<std::string>& violations = data.verified.violations;
+std::string plain_verdict(const std::vector<std::string>& violations) {
   std::string text = violations.empty() ? "<p>Within limits.</p>" : "<p>NOT within limits:</p><ul>";
   for (const std::string& violation : violations) {
     text += "<li>" + escape_html(violation) + "</li>";
   }
   return text + (violations.empty() ? "" : "</ul>") + "<p>Charts and pictures need JavaScript.</p>";
+}
+
+struct Parts {
+  const std::string& title;
+  const std::string& program;  ///< takes the place of a title that is empty
+  std::string_view body;
+  std::string_view view3d;
+  std::string_view script;
+};
+
+std::string page_of(const Parts& parts, const std::vector<std::string>& violations, const std::string& json) {
+  std::string page = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  page += "<title>" + escape_html(parts.title.empty() ? parts.program : parts.title) + " - gravure report</title>\n";
+  page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  // Nothing is fetched, and a page that is taken somewhere else cannot be made to.
+  page +=
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
+      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n";
+  page += "<meta name=\"color-scheme\" content=\"light dark\">\n<style>\n";
+  page += page_parts::style();
+  page += "</style>\n</head>\n<body>\n<noscript>" + plain_verdict(violations) + "</noscript>\n";
+  page += parts.body;
+  page += "<script type=\"application/json\" id=\"report-data\">" + script_safe(json) + "</script>\n<script>\n";
+  page += parts.view3d;
+  page += "</script>\n<script>\n";
+  page += parts.script;
+  page += "</script>\n</body>\n</html>\n";
+  return page;
 }
 
 }  // namespace
@@ -83,24 +110,15 @@ bool report_has_3d() noexcept {
 
 Result<std::string> report_page(const report::ReportData& data) {
   GRAVURE_TRY(const std::string json, report_json(data));
-  const std::string title = data.header->plan.title.empty() ? data.program : data.header->plan.title;
-  std::string page = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  page += "<title>" + escape_html(title) + " - gravure report</title>\n";
-  page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  // Nothing is fetched, and a page that is taken somewhere else cannot be made to.
-  page +=
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
-      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n";
-  page += "<meta name=\"color-scheme\" content=\"light dark\">\n<style>\n";
-  page += page_parts::style();
-  page += "</style>\n</head>\n<body>\n<noscript>" + plain_verdict(data) + "</noscript>\n";
-  page += page_parts::body();
-  page += "<script type=\"application/json\" id=\"report-data\">" + script_safe(json) + "</script>\n<script>\n";
-  page += page_parts::view3d();
-  page += "</script>\n<script>\n";
-  page += page_parts::script();
-  page += "</script>\n</body>\n</html>\n";
-  return page;
+  return page_of(
+      {data.header->plan.title, data.program, page_parts::body(), page_parts::view3d(), page_parts::script()},
+      data.verified.violations, json);
+}
+
+Result<std::string> path_report_page(const report::PathReportData& data) {
+  GRAVURE_TRY(const std::string json, path_report_json(data));
+  return page_of({data.header->plan.title, data.program, page_parts::path_body(), {}, page_parts::path_script()},
+                 data.verified.violations, json);
 }
 
 }  // namespace gravure

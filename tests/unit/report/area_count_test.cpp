@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "dice.hpp"
 
 namespace gravure::report {
@@ -92,6 +95,37 @@ TEST(ChooseCells, MakesCellsThatAreSquareOnTheWorkpiece) {
   const double width = 8.0 * 100'000 / static_cast<double>(cells.width);
   const double height = 2.0 * 100'000 / static_cast<double>(cells.height);
   EXPECT_NEAR(width / height, 1, 0.01);
+}
+
+TEST(AreaCount, CountsALayerOf37GigapixelsInTheCellsOfAPage) {
+  const Extent picture{188'500, 196'300};
+  const Extent cells = choose_cells(picture, 8, 8, 250'000);
+  ASSERT_LE(cells.area(), 250'000) << "what is kept does not grow with the picture";
+  constexpr std::int64_t kRows = 100;  // the same ones again and again: every eighth pixel of every other row
+  const std::int64_t row_bytes = (picture.width + 7) / 8;
+  std::vector<std::byte> rows(static_cast<std::size_t>(kRows * row_bytes));
+  for (std::int64_t row = 0; row < kRows; row += 2) {
+    std::fill_n(rows.begin() + row * row_bytes, row_bytes - 1, std::byte{0x80});
+    rows[static_cast<std::size_t>((row + 1) * row_bytes - 1)] = std::byte{0x80};  // 4 pixels are left in it
+  }
+  AreaCount count(picture, cells);
+  for (std::int64_t row = 0; row < picture.height; row += kRows) {
+    ASSERT_TRUE(count.add(rows, kRows));
+  }
+  ASSERT_TRUE(count.complete());
+  std::int64_t ones = 0;
+  std::int64_t pixels = 0;
+  for (std::int64_t row = 0; row < cells.height; ++row) {
+    for (std::int64_t column = 0; column < cells.width; ++column) {
+      const std::int64_t in_cell = count.pixels_of(column, row);
+      const std::int64_t fired = count.ones()[static_cast<std::size_t>(row * cells.width + column)];
+      ones += fired;
+      pixels += in_cell;
+      ASSERT_NEAR(static_cast<double>(fired) / static_cast<double>(in_cell), 1.0 / 16, 0.002) << column << ", " << row;
+    }
+  }
+  EXPECT_EQ(pixels, picture.area());
+  EXPECT_EQ(ones, row_bytes * picture.height / 2);
 }
 
 TEST(CellBegin, DoesNotOverflowWhereThePictureIsLarge) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "gravure/core/exact.hpp"
+
+/// How figures stand in the data of both pages.
+namespace gravure {
+
+using Json = nlohmann::ordered_json;
+
+/// A figure, and what it is exactly where a person can read that: a circumference from pi has hundreds of digits.
+Json json_of(const Rational& value);
+
+/// Ten digits: what a page shows, and the same from every mathematical library.
+double figure(double value);
+
+/// Values of 0 to `most` as 16 bits each, little-endian, in base64.
+std::string sixteen_bits(const std::vector<double>& values, double most);
+
+}  // namespace gravure
