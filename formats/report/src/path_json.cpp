@@ -7,7 +7,7 @@
 namespace gravure {
 namespace {
 
-Json json_of(const std::optional<Rational>& value) {
+Json allowed(const std::optional<Rational>& value) {
   return value ? Json(to_double(*value)) : Json(nullptr);
 }
 
@@ -30,11 +30,11 @@ double place(double value) {
 Json figures_json(const PathReport& report, const PathPlan& path) {
   Json figures = Json::array();
   if (report.points_compared) {
-    figures.push_back(judged("focus offset", "\u00b5m", report.focus_offset_um, json_of(path.max_focus_offset_um)));
-    figures.push_back(judged("incidence", "\u00b0", report.incidence_deg, json_of(path.max_incidence_deg)));
-    figures.push_back(judged("landing", "\u00b5m", report.landing_um, json_of(path.max_landing_um)));
+    figures.push_back(judged("focus offset", "\u00b5m", report.focus_offset_um, allowed(path.max_focus_offset_um)));
+    figures.push_back(judged("incidence", "\u00b0", report.incidence_deg, allowed(path.max_incidence_deg)));
+    figures.push_back(judged("landing", "\u00b5m", report.landing_um, allowed(path.max_landing_um)));
   }
-  figures.push_back(judged("galvo from its centre", "mm", report.displacement_mm, json_of(path.max_displacement_mm)));
+  figures.push_back(judged("galvo from its centre", "mm", report.displacement_mm, allowed(path.max_displacement_mm)));
   figures.push_back(judged("spacing", "\u00b5m", report.spacing_um, figure(report.half_slot_um)));
   return figures;
 }
@@ -55,11 +55,11 @@ Json axes_json(const report::PathReportData& data) {
                     {"unit", turns ? "\u00b0" : "mm"},
                     {"from", place(use.least)},
                     {"to", place(use.most)},
-                    {"least_allowed", json_of(plan.least)},
-                    {"most_allowed", json_of(plan.most)},
-                    {"speed", {figure(use.max_speed), json_of(plan.limits.max_speed)}},
-                    {"acceleration", {figure(use.max_acceleration), json_of(plan.limits.max_acceleration)}},
-                    {"jerk", {figure(use.max_jerk), json_of(plan.limits.max_jerk)}},
+                    {"least_allowed", allowed(plan.least)},
+                    {"most_allowed", allowed(plan.most)},
+                    {"speed", {figure(use.max_speed), allowed(plan.limits.max_speed)}},
+                    {"acceleration", {figure(use.max_acceleration), allowed(plan.limits.max_acceleration)}},
+                    {"jerk", {figure(use.max_jerk), allowed(plan.limits.max_jerk)}},
                     {"trace", {{"least", least}, {"most", most}}}});
   }
   return axes;
@@ -111,14 +111,14 @@ Result<std::string> path_report_json(const report::PathReportData& data) {
                        {"surface", path.surface},
                        {"texture", path.texture},
                        {"signs", path.machine},
-                       {"pitch_um", gravure::json_of(plan.line.pixel_pitch_um)},
-                       {"duration_s", gravure::json_of(plan.job.duration_s)},
+                       {"pitch_um", json_of(plan.line.pixel_pitch_um)},
+                       {"duration_s", json_of(plan.job.duration_s)},
                        {"ticks", std::to_string(plan.job.ticks)},
                        {"warnings", plan.warnings}}},
                      {"clock",
                       {{"seed_hz", plan.clock.seed_hz},
                        {"fpga_hz", plan.clock.fpga_hz},
-                       {"pulse_hz", gravure::json_of(plan.clock.pulse_hz)},
+                       {"pulse_hz", json_of(plan.clock.pulse_hz)},
                        {"ticks_per_slot", plan.clock.ticks_per_slot},
                        {"slots_per_period", plan.line.slots},
                        {"ticks_per_period", plan.line.ticks},
