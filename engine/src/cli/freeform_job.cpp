@@ -45,6 +45,22 @@ bool find_files(const ProgramHeader& header, const std::string& path, const std:
   return all;
 }
 
+/// Says of a program of zones whether what it was made of is still there and the same.
+Evidence evidence_of_zones(const ProgramHeader& header, const std::string& path, const std::string& folder) {
+  Evidence evidence;
+  for (const SourceImage& source : header.sources) {
+    const std::string place = locate_source(source, header, path, folder);
+    const Result<std::string> hash = place.empty() ? Result<std::string>(std::string()) : sha256_file(place);
+    if (place.empty()) {
+      evidence.notes.push_back(source.path + " not found");
+    } else if (hash && hash.value() != source.sha256) {
+      evidence.notes.push_back(place + " is not the file that was compiled (other SHA-256)");
+    }
+  }
+  evidence.notes.emplace_back("contours are not laid out anew: points and limits are those that the program stores");
+  return evidence;
+}
+
 /// The job text in a program must lead to the very plan that stands in it.
 void hold_plan(const FreeformJob& job, const ProgramHeader& header, Evidence& evidence) {
   const Result<Plan> again = plan_of(job, *evidence.wanted, set_points_of(header.plan));
@@ -54,6 +70,9 @@ void hold_plan(const FreeformJob& job, const ProgramHeader& header, Evidence& ev
 }
 
 Result<Evidence> evidence_of(const ProgramHeader& header, const std::string& path, const std::string& folder) {
+  if (header.plan.mode == Mode::zones) {
+    return evidence_of_zones(header, path, folder);
+  }
   Evidence evidence;
   if (header.job_text.empty() || header.plan.mode != Mode::freeform) {
     return evidence;
@@ -97,6 +116,19 @@ Json planned_json(const FreeformJob& job, const PlannedTexture& planned, const s
   return json;
 }
 
+/// verify would not pass it.
+void refuse_texture(const std::vector<std::string>& violations, const Command& command) {
+  if (command.json) {
+    print_json({{"program", nullptr}, {"violations", violations}});
+    return;
+  }
+  std::string text;
+  for (const std::string& violation : violations) {
+    text += "violation: " + violation + "\n";
+  }
+  print(text + "NOT within limits, nothing was written: give a smaller sigma, slower axes or wider limits\n");
+}
+
 }  // namespace
 
 bool is_freeform_job(const std::string& path) {
@@ -125,6 +157,10 @@ Result<int> plan_freeform_job(const std::string& path, const Command& command) {
 Result<int> compile_freeform_job(const FreeformJob& job, const std::string& output, const GrvOptions& grv,
                                  const Command& command) {
   GRAVURE_TRY(const PlannedTexture planned, plan_texture(job));
+  if (const std::vector<std::string> violations = violations_of(job, planned.texture); !violations.empty()) {
+    refuse_texture(violations, command);
+    return kLimitViolated;
+  }
   GRAVURE_TRY(const CompiledPath made, compile_texture(job, planned, output, grv));
   const PathSpacing& spacing = made.spacing;
   const Plan& plan = made.header.plan;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -25,19 +24,6 @@ Rational exact(double value) {
 /// Of degrees that have been rad: to ten digits they are what was given.
 Rational exact_degrees(double rad) {
   return parse_decimal(fmt::format("{:.10g}", rad * kDegreesPerRad)).value();
-}
-
-Result<PathPulses> all_pulses(double pitch_mm, double length_mm) {
-  constexpr double kMostPulses = 8'589'934'592.0;  // 2^33, as of pictures: their bits take 1 GiB
-  const double wanted = std::floor(length_mm / pitch_mm + 0.5);
-  if (wanted > kMostPulses) {
-    return Error{ErrorCode::out_of_range,
-                 fmt::format("pitch_um = {:.6g}: {:.6g} pulses along {:.6g} mm of path; must be at most {:.0f}",
-                             pitch_mm * kUmPerMm, wanted, length_mm, kMostPulses)};
-  }
-  const auto count = static_cast<std::int64_t>(wanted);
-  return PathPulses{pitch_mm, count,
-                    std::vector<std::byte>(static_cast<std::size_t>((count + 7) / 8), std::byte{0xFF})};
 }
 
 bool is_level(const AxesSettings& axes) {
@@ -127,7 +113,8 @@ Result<WantedTexture> wanted_of(const FreeformJob& job, const texture::TexturePa
     wanted.targets.push_back({along_mm[i], {p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}});
   }
   if (job.texture.bitmap.empty()) {
-    GRAVURE_TRY(wanted.pulses, placed(job, "texture", all_pulses(*job.texture.pitch_um / kUmPerMm, along_mm.back())));
+    GRAVURE_TRY(wanted.pulses,
+                placed(job, "texture", all_pulses("pitch_um", *job.texture.pitch_um / kUmPerMm, along_mm.back())));
   } else {
     GRAVURE_TRY(wanted.picture, placed(job, "texture.bitmap", picture_grid_of(job.texture)));
     GRAVURE_TRY(wanted.pulses, placed(job, "texture.bitmap", picture_pulses_of(job.texture)));

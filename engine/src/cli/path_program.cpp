@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "gravure/core/units.hpp"
 #include "program_files.hpp"
 
 namespace gravure::cli {
@@ -93,6 +94,19 @@ PathPulses all_pulses_of(const PathPlan& path) {
 }
 
 }  // namespace
+
+Result<PathPulses> all_pulses(const std::string& key, double pitch_mm, double length_mm) {
+  constexpr double kMostPulses = 8'589'934'592.0;  // 2^33, as of pictures: their bits take 1 GiB
+  const double wanted = std::floor(length_mm / pitch_mm + 0.5);
+  if (!(wanted >= 1 && wanted <= kMostPulses)) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("{} = {:.6g}: {:.6g} pulses along {:.6g} mm of path; must be 1 to {:.0f}", key,
+                             pitch_mm * kUmPerMm, wanted, length_mm, kMostPulses)};
+  }
+  const auto count = static_cast<std::int64_t>(wanted);
+  return PathPulses{pitch_mm, count,
+                    std::vector<std::byte>(static_cast<std::size_t>((count + 7) / 8), std::byte{0xFF})};
+}
 
 bool axis_turns(std::size_t axis) {
   return kPathAxes[axis] == "A" || kPathAxes[axis] == "C";

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "gravure/core/path_motion.hpp"
 #include "gravure/core/program.hpp"
 #include "gravure/formats/tiff_writer.hpp"
 #include "gravure/twin/verify_path.hpp"
@@ -12,6 +13,9 @@ namespace gravure::cli {
 
 /// A and C of kPathAxes, not the others.
 bool axis_turns(std::size_t axis);
+
+/// A pulse every pitch along a path, all of which fire; out_of_range, naming `key`, for none or more than 2^33.
+Result<PathPulses> all_pulses(const std::string& key, double pitch_mm, double length_mm);
 
 /// Judges a program that follows a path, with a bar of progress; `violations` and `notes` are what is known of it
 /// already and come first.

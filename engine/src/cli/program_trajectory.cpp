@@ -5,6 +5,10 @@ namespace gravure::cli {
 Result<ProgramTrajectory> open_trajectory(const std::string& path) {
   GRAVURE_TRY(std::unique_ptr<LineSource> program, open_grv(path));
   const ProgramHeader& header = program->header();
+  if (header.plan.path) {
+    return Error{ErrorCode::bad_argument,
+                 path + ": follows a path: `export --nc` writes its axes and the frames of its galvo"};
+  }
   if (!header.plan.scanner) {
     return Error{ErrorCode::bad_argument, path +
                                               ": its plan has no scanner: give scanner.field_mm in the job, or a "

@@ -30,7 +30,9 @@ void add_texture_options(CLI::App& verb, TextureSettings& options) {
   verb.add_option("--height-field", options.height_field, "Surface from a picture of 16 bits or floats");
   add_length(verb, "--pixel-um", options.pixel_um, 1e9, "Side of its pixels along x");
   add_length(verb, "--pixel-y-um", options.pixel_y_um, 1e9, "The same along y (default: as along x)");
-  verb.add_option("--height-mm", options.height_mm, "z of its sample 0 and of its largest one, or of 1.0")->expected(2);
+  verb.add_option("--height-mm", options.height_mm, "z of its sample 0 and of its largest one, or of 1.0")
+      ->expected(2)
+      ->check(number_from(-1e6, 1e6));
   verb.add_option("--mesh", options.mesh, "Surface from the triangles of an STL or PLY file, seen along z");
   add_length(verb, "--max-slope-deg", options.max_slope_deg, 90, "Steepest slope of the surface that is taken")
       ->capture_default_str();
@@ -87,8 +89,12 @@ void add_axes_options(CLI::App& verb, AxesSettings& options) {
   verb.add_option("--signs", options.signs, "Senses of the axes: of [A], or of [C2]'s post-processor")
       ->check(one_of(kSigns))
       ->capture_default_str();
-  verb.add_option("--origin-mm", options.origin_mm, "Where A and C meet, in the workpiece: x y z")->expected(3);
-  verb.add_option("--tilt-deg", options.tilt_deg, "Clamping: turned about x, then about y, by so much")->expected(2);
+  verb.add_option("--origin-mm", options.origin_mm, "Where A and C meet, in the workpiece: x y z")
+      ->expected(3)
+      ->check(number_from(-1e6, 1e6));
+  verb.add_option("--tilt-deg", options.tilt_deg, "Clamping: turned about x, then about y, by so much")
+      ->expected(2)
+      ->check(number_from(-180, 180));
 }
 
 void add_motion_options(CLI::App& verb, FreeformJob& job, std::vector<std::string>& limits) {
@@ -105,7 +111,8 @@ void add_motion_options(CLI::App& verb, FreeformJob& job, std::vector<std::strin
       ->check(one_of(kStops));
   verb.add_option("--limit", limits,
                   "AXIS=SPEED,ACCELERATION,JERK of one axis, mm or rad per s, s^2, s^3; as often as needed");
-  add_length(verb, "--servo-us", job.motion.servo_us, 1e6, "Servo period: for a program a whole number of pulse slots")
+  verb.add_option("--servo-us", job.motion.servo_us, "Servo period: for a program a whole number of pulse slots")
+      ->check(number_from(1, 1e5))
       ->capture_default_str();
 }
 

@@ -122,11 +122,25 @@ Result<void> check_name(const std::string& output) {
                                             " and convert it with another program"};
 }
 
+/// A program that follows a path is one layer, gone along once.
+Result<void> check_selected(const UnrollArguments& options) {
+  const auto is_first = [](const std::string& option, const std::optional<std::int64_t>& number) -> Result<void> {
+    if (number.value_or(0) == 0) {
+      return {};
+    }
+    return Error{ErrorCode::out_of_range,
+                 option + " " + std::to_string(*number) + ": a program that follows a path has number 0 alone"};
+  };
+  GRAVURE_CHECK(is_first("--layer", options.layer));
+  return is_first("--revolution", options.revolution);
+}
+
 Result<int> run_unroll(const UnrollArguments& options, const Command& command) {
   GRAVURE_CHECK(check_name(options.output));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
   if (header.plan.path) {
+    GRAVURE_CHECK(check_selected(options));
     GRAVURE_TRY(const BilevelTiffPage page, path_page_of(header, options));
     return unroll_path_program(*program, page, options.output, command);
   }

@@ -3,17 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "gravure/core/file_output.hpp"
 #include "gravure/formats/grv.hpp"
+#include "gravure/formats/image_files.hpp"
 #include "gravure/pipeline/compile_path.hpp"
 #include "gravure/pipeline/path_plan.hpp"
 #include "gravure/zones/zone_motion.hpp"
+#include "path_program.hpp"
 #include "program_files.hpp"
 #include "texture_options.hpp"
 #include "zones_job_loader.hpp"
@@ -100,17 +102,25 @@ PathPlanRequest plan_request(const LoadedZonesJob& loaded) {
   return request;
 }
 
-/// Every place of a pulse fires.
-PathPulses all_places(const Rational& pitch_um, double length_mm) {
-  const double pitch_mm = to_double(pitch_um) / kUmPerMm;
-  const auto count = static_cast<std::int64_t>(std::floor(length_mm / pitch_mm + 0.5));
-  return {pitch_mm, count, std::vector<std::byte>(static_cast<std::size_t>((count + 7) / 8), std::byte{0xFF})};
+/// What the job names, as sources of its program: without a size, for they are no pictures.
+Result<std::vector<SourceImage>> zone_sources(const LoadedZonesJob& loaded) {
+  std::vector<SourceImage> sources;
+  const std::string* const names[] = {&loaded.job.contours, &loaded.job.transform, &loaded.job.machine};
+  for (std::size_t i = 0; i < std::size(names); ++i) {
+    if (!names[i]->empty()) {
+      GRAVURE_TRY(const std::string hash, sha256_file(loaded.inputs[i + 1]));  // the first is the job itself
+      sources.push_back({*names[i], 0, 0, 0, hash});
+    }
+  }
+  return sources;
 }
 
 Result<CompiledPath> compile_motion(const CompileOptions& options, const LoadedZonesJob& loaded,
                                     const ZoneMotion& motion) {
-  const PathPulses pulses = all_places(loaded.job.pulse_pitch_um, motion.length_mm());
+  GRAVURE_TRY(const PathPulses pulses, all_pulses("[marking] pulse_pitch_um",
+                                                  to_double(loaded.job.pulse_pitch_um) / kUmPerMm, motion.length_mm()));
   ProgramHeader header;
+  GRAVURE_TRY(header.sources, zone_sources(loaded));
   header.job_text = loaded.text;
   header.job_path = relative_to(options.job, std::filesystem::path(options.output).parent_path());
   GRAVURE_TRY(header.plan, make_path_plan(plan_request(loaded), motion.instants(), pulses.count,

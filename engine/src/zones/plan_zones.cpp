@@ -88,7 +88,11 @@ Result<void> check_reach(const Machine& machine, ZonePlan& plan) {
 Result<ZonePlan> plan_zones(const ZonePlanRequest& request) {
   GRAVURE_CHECK(check_machine(request.machine));
   ZonePlan plan;
-  const ZoneLimits limits{request.max_incidence_rad, request.machine.head.field_mm};
+  // Between two set-points the mirrors follow a cubic, which swings out by fractions of a micrometre where a stroke
+  // ends.
+  constexpr double kSwing_mm = 0.002;
+  const double field_mm = request.machine.head.field_mm;
+  const ZoneLimits limits{request.max_incidence_rad, field_mm - 2 * std::min(kSwing_mm, field_mm / 100)};
   GRAVURE_TRY(plan.pieces, cut_to_field(request.contours, limits.field_mm));
   GRAVURE_TRY(const ZoneSet set, request.method == Method::cover ? cover_zones(plan.pieces, limits)
                                                                  : k_means_zones(plan.pieces, limits, request.kmeans));

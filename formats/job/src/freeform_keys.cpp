@@ -174,8 +174,9 @@ constexpr std::array kTable = {
     word("motion", "branch", kBranches, "\"positive\"", [](FreeformJob& j, const Value& v) { j.axes.branch = v.text; }),
     word("motion", "stops", kStops, "\"points\" of a Hilbert curve, else \"corners\"",
          [](FreeformJob& j, const Value& v) { j.motion.stops = v.text; }),
-    decimal("motion", "servo_us", "us", kMostMm, "50",
-            [](FreeformJob& j, const Value& v) { j.motion.servo_us = to_double(v.number); }),
+    decimal(
+        "motion", "servo_us", "us", "100_000", "50",
+        [](FreeformJob& j, const Value& v) { j.motion.servo_us = to_double(v.number); }, "1"),
 
     axis_key<0, kSpeed>("axis.X", "max_speed_mm_s", "mm/s", kMostSpeed),
     axis_key<0, kAcceleration>("axis.X", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),

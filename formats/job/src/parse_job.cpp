@@ -55,9 +55,10 @@ class Reader {
     if (mode == nullptr || mode->value.kind != Kind::text || !contains(other_modes(), mode->value.text)) {
       return false;
     }
-    violations_.add(mode->value.at, "[job] mode = " + mode->value.shown + ": must be " +
-                                        range_text(*find_key("job", "mode")) +
-                                        " here; plan, compile and verify take \"freeform\" as well");
+    violations_.add(mode->value.at,
+                    "[job] mode = " + mode->value.shown + ": must be " + range_text(*find_key("job", "mode")) +
+                        " here; plan, compile and verify take \"freeform\" as well, `gravure zones compile` takes "
+                        "\"zones\"");
     return true;
   }
 

@@ -56,7 +56,7 @@ constexpr std::array kTable = {
     number("marking", "pulse_pitch_um", "um", "0.000_001", "1_000_000", kRequired),
     number("marking", "mark_speed_mm_s", "mm/s", "0.000_001", "1_000_000", kRequired),
     number("marking", "jump_speed_mm_s", "mm/s", "0.000_001", "1_000_000", "as fast as the head can"),
-    number("marking", "servo_us", "us", "0.001", "1_000_000", "50"),
+    number("marking", "servo_us", "us", "1", "100_000", "50"),
 
     text("machine", "file", "the example of `gravure zones plan`"),
     number("machine", "field_mm", "mm", "0.001", "10_000", "the machine's"),

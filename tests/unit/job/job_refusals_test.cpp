@@ -175,7 +175,7 @@ const Refusal kContradictions[] = {
      "revolution; say order = \"cycle\" or \"hold\", or make them equal"},
     {"ModeWithKeysOfItsOwn", "\"rotary\"", "\"freeform\"", kBad, "\"freeform\"",
      "[job] mode = \"freeform\": must be \"rotary\", \"helical\" or \"flat\" here; plan, compile and verify take "
-     "\"freeform\" as well"},
+     "\"freeform\" as well, `gravure zones compile` takes \"zones\""},
     {"CarriageOfARotaryJob", "[image]", "[carriage]\nlayers = 0\n[image]", kBad, "[carriage]",
      "[carriage]: only mode = \"helical\" has this section, not mode = \"rotary\": take it out, or set that mode"},
     {"StageOfARotaryJob", "[image]", "[stage]\nlines = 10\n[image]", kBad, "[stage]",
