@@ -51,7 +51,7 @@ class DiskFile : public ByteFile {
   }
 
   Result<void> write(std::uint64_t offset, std::span<const std::byte> bytes) override {
-    return write_through(fd_, offset, bytes);
+    return write_at(fd_, offset, bytes);
   }
 
   Result<void> resize(std::uint64_t bytes) override {
@@ -64,7 +64,9 @@ class DiskFile : public ByteFile {
   Result<void> flush() override { return {}; }
 
  protected:
-  Result<void> write_through(int fd, std::uint64_t offset, std::span<const std::byte> bytes) const {
+  int fd() const noexcept { return fd_; }
+
+  Result<void> write_at(int fd, std::uint64_t offset, std::span<const std::byte> bytes) const {
     while (!bytes.empty()) {
       const ssize_t put = ::pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
       if (put < 0 && errno == EINTR) {
@@ -85,13 +87,12 @@ class DiskFile : public ByteFile {
   std::string path_;
 };
 
-/// Gathers what is written in a row. Whole blocks go past the page cache: filling it with fresh pages costs several
-/// times what the disk does, and pushes out what other programs have there. Everything else, and all of it where the
-/// file system does not allow that, takes the usual way. One thread at a time.
+/// Gathers what is written in a row. Whole pages of long rows go past the page cache: filling it with fresh pages costs
+/// several times what the disk does, and pushes out what other programs have there. Everything else, and all of it
+/// where the file system does not allow that, takes the usual way. One thread at a time.
 class GatheringFile final : public DiskFile {
  public:
-  GatheringFile(int fd, const std::string& real_path, std::string path)
-      : DiskFile(fd, std::move(path)), fd_(fd), real_path_(real_path) {}
+  GatheringFile(int fd, std::string path) : DiskFile(fd, std::move(path)) {}
   GatheringFile(const GatheringFile&) = delete;
   GatheringFile& operator=(const GatheringFile&) = delete;
   ~GatheringFile() override {
@@ -135,7 +136,7 @@ class GatheringFile final : public DiskFile {
       gathered_ += count;
       bytes = bytes.subspan(count);
       if (used + count == kBlockBytes) {
-        GRAVURE_CHECK(write_block());
+        GRAVURE_CHECK(flush());
       }
     }
     return {};
@@ -147,7 +148,9 @@ class GatheringFile final : public DiskFile {
   }
 
   Result<void> flush() override {
-    GRAVURE_CHECK(write_gathered());
+    if (gathered_ < kDirectBytes || !write_pages()) {  // the usual way succeeds, or says why not
+      GRAVURE_CHECK(write_gathered());
+    }
     begin_ = end();
     gathered_ = 0;
     return {};
@@ -156,6 +159,7 @@ class GatheringFile final : public DiskFile {
  private:
   static constexpr std::size_t kPageBytes = 4096;
   static constexpr std::size_t kBlockBytes = std::size_t{1} << 21;
+  static constexpr std::size_t kDirectBytes = std::size_t{1} << 16;  // below, waiting for the disk costs more
 
   struct Free {
     void operator()(std::byte* block) const { std::free(block); }
@@ -168,32 +172,35 @@ class GatheringFile final : public DiskFile {
     if (gathered_ == 0) {
       return {};
     }
-    return write_through(fd_, begin_, {block_.get() + begin_ % kPageBytes, gathered_});
+    return write_at(fd(), begin_, {block_.get() + begin_ % kPageBytes, gathered_});
   }
 
-  /// The block is full: its whole pages go straight to the disk.
-  Result<void> write_block() {
-    const std::size_t first = begin_ % kPageBytes;
-    const std::size_t head = first == 0 ? 0 : kPageBytes - first;
+  /// Whole pages go straight to the disk, what is left at either end the usual way. False where that is not allowed or
+  /// did not succeed: then any of it may have been written.
+  bool write_pages() {
     if (!tried_direct_) {
       tried_direct_ = true;
-      direct_ = ::open(real_path_.c_str(), O_WRONLY | O_DIRECT | O_CLOEXEC);
+      // The very file that is open, whatever its path has come to mean.
+      const std::string self = "/proc/self/fd/" + std::to_string(fd());
+      direct_ = ::open(self.c_str(), O_WRONLY | O_DIRECT | O_CLOEXEC);
     }
     if (direct_ < 0) {
-      return flush();
+      return false;
     }
-    GRAVURE_CHECK(write_through(fd_, begin_, {block_.get() + first, head}));
-    if (!write_through(direct_, begin_ + head, {block_.get() + first + head, gathered_ - head})) {
-      ::close(std::exchange(direct_, -1));  // the usual way succeeds, or says why not
-      return flush();
+    const std::size_t first = begin_ % kPageBytes;
+    const std::size_t used = first + gathered_;
+    const std::size_t pages_begin = first == 0 ? 0 : kPageBytes;
+    const std::size_t pages_end = used / kPageBytes * kPageBytes;
+    const std::uint64_t block_at = begin_ - first;
+    const auto part = [&](std::size_t from, std::size_t to) { return std::span(block_.get() + from, to - from); };
+    if (!write_at(direct_, block_at + pages_begin, part(pages_begin, pages_end))) {
+      ::close(std::exchange(direct_, -1));
+      return false;
     }
-    begin_ = end();
-    gathered_ = 0;
-    return {};
+    return write_at(fd(), begin_, part(first, pages_begin)) &&
+           write_at(fd(), block_at + pages_end, part(pages_end, used));
   }
 
-  int fd_;
-  std::string real_path_;
   int direct_ = -1;
   bool tried_direct_ = false;
   std::unique_ptr<std::byte, Free> block_;
@@ -235,7 +242,7 @@ Result<std::unique_ptr<ByteFile>> open_file(const std::string& path, OpenFor pur
   }
   std::unique_ptr<ByteFile> file;
   if (purpose == OpenFor::writing) {
-    file = std::make_unique<GatheringFile>(fd, path, shown_path);
+    file = std::make_unique<GatheringFile>(fd, shown_path);
   } else {
     file = std::make_unique<DiskFile>(fd, shown_path);
   }
