@@ -17,6 +17,19 @@ Json json_of(const Rational& value);
 /// Ten digits: what a page shows, and the same from every mathematical library.
 double figure(double value);
 
+/// What both documents begin with: report, generator, program and verdict{within_limits, violations[], notes[], lines}.
+template <class Data>
+Json report_head(const Data& data) {
+  return {{"report", 1},
+          {"generator", data.generator},
+          {"program", data.program},
+          {"verdict",
+           {{"within_limits", data.verified.violations.empty()},
+            {"violations", data.verified.violations},
+            {"notes", data.verified.notes},
+            {"lines", data.verified.lines}}}};
+}
+
 /// Values of 0 to `most` as 16 bits each, little-endian, in base64.
 std::string sixteen_bits(const std::vector<double>& values, double most);
 

@@ -243,26 +243,19 @@ Result<std::string> report_json(const report::ReportData& data) {
                        {"sha256", source.sha256}});
   }
   GRAVURE_TRY(Json layers, layers_json(data));
-  const Json json = {{"report", 1},
-                     {"generator", data.generator},
-                     {"program", data.program},
-                     {"verdict",
-                      {{"within_limits", verified.violations.empty()},
-                       {"violations", verified.violations},
-                       {"notes", verified.notes},
-                       {"images_compared", verified.images_compared},
-                       {"wrong_pixels", verified.wrong_pixels},
-                       {"pixels", verified.pixels},
-                       {"fired_pixels", verified.fired_pixels},
-                       {"lines", verified.lines}}},
-                     {"job", job_json(data)},
-                     {"clock", clock_json(data.header->plan)},
-                     {"seam", seam_json(data)},
-                     {"error", error_json(data)},
-                     {"line", line_json(data.line)},
-                     {"pictures", std::move(layers)},
-                     {"relief", relief_json(data)},
-                     {"sources", sources}};
+  Json json = report_head(data);
+  json["verdict"].update({{"images_compared", verified.images_compared},
+                          {"wrong_pixels", verified.wrong_pixels},
+                          {"pixels", verified.pixels},
+                          {"fired_pixels", verified.fired_pixels}});
+  json.update({{"job", job_json(data)},
+               {"clock", clock_json(data.header->plan)},
+               {"seam", seam_json(data)},
+               {"error", error_json(data)},
+               {"line", line_json(data.line)},
+               {"pictures", std::move(layers)},
+               {"relief", relief_json(data)},
+               {"sources", sources}});
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
