@@ -6,6 +6,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -13,6 +15,7 @@
 
 #include "folder_output.hpp"
 #include "gravure/core/file_output.hpp"
+#include "gravure/core/set_point_walk.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/nc_program.hpp"
 #include "gravure/scan/xy2_100.hpp"
@@ -27,19 +30,19 @@ constexpr double kWritten = 0.6e-9;  // half of the last digit written, and the 
 constexpr int kFrameBits = 20;
 constexpr std::string_view kTableHead = "t_s,X_mm,Y_mm,Z_mm,A_deg,C_deg,U_mm,V_mm,along_mm\n";
 
-/// The set-points of a program in mm and degrees, block by block.
+/// The set-points of a program in mm and degrees.
 class Places {
  public:
-  explicit Places(LineSource& program) : program_(program), total_(set_points_of(program.header().plan)) {
+  explicit Places(LineSource& program) : points_(program) {
     const PathPlan& path = *program.header().plan.path;
     for (std::size_t axis = 0; axis < units_.size(); ++axis) {
       units_[axis] = (axis_turns(axis) ? 180 / std::numbers::pi : 1) / to_double(path.axes[axis].counts_per_unit);
     }
     along_unit_ = 1 / to_double(path.along_counts_per_mm);
   }
-  std::int64_t total() const noexcept { return total_; }
+  std::int64_t total() const noexcept { return points_.total(); }
   Result<AxisPlaces> at(std::int64_t index) {
-    GRAVURE_TRY(const PathSetPoint point, set_point(std::clamp<std::int64_t>(index, 0, total_ - 1)));
+    GRAVURE_TRY(const PathSetPoint point, points_.at(index));
     AxisPlaces places{};
     for (std::size_t axis = 0; axis < places.size(); ++axis) {
       places[axis] = static_cast<double>(point.counts[axis]) * units_[axis];
@@ -47,25 +50,12 @@ class Places {
     return places;
   }
   Result<double> along_mm(std::int64_t index) {
-    GRAVURE_TRY(const PathSetPoint point, set_point(index));
+    GRAVURE_TRY(const PathSetPoint point, points_.at(index));
     return static_cast<double>(point.along_counts) * along_unit_;
   }
 
  private:
-  Result<PathSetPoint> set_point(std::int64_t index) {
-    constexpr std::int64_t kBlock = 8192;
-    if (index < first_ || index >= first_ + static_cast<std::int64_t>(block_.size())) {
-      first_ = index / (kBlock / 2) * (kBlock / 2);
-      block_.resize(static_cast<std::size_t>(std::min(kBlock, total_ - first_)));
-      GRAVURE_CHECK(program_.read_set_points(first_, block_));
-    }
-    return block_[static_cast<std::size_t>(index - first_)];
-  }
-
-  LineSource& program_;
-  std::int64_t total_;
-  std::int64_t first_ = 0;
-  std::vector<PathSetPoint> block_;
+  SetPointWalk points_;
   AxisPlaces units_{};
   double along_unit_ = 0;
 };
@@ -186,34 +176,43 @@ class Exporter {
     return {};
   }
 
+  /// Line by line: of hours there are gigabytes.
   Result<void> check_axes() {
-    GRAVURE_TRY(const std::string text, read_file(folder_.file("axes.csv").string(), std::size_t{1} << 34U));
-    std::string_view rest = text;
-    if (!rest.starts_with(kTableHead)) {
+    std::ifstream table(folder_.file("axes.csv"));
+    std::string line;
+    if (!std::getline(table, line) || line + "\n" != kTableHead) {
       return differs("axes.csv", 0);
     }
-    rest.remove_prefix(kTableHead.size());
     for (std::int64_t i = 0; i < places_.total(); ++i) {
       GRAVURE_TRY(const AxisPlaces places, places_.at(i));
-      std::array<double, kPathAxes.size() + 2> row{};
-      for (double& value : row) {
-        const auto [end, failed] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-        const auto taken = static_cast<std::size_t>(end - rest.data());
-        if (failed != std::errc() || taken >= rest.size() || rest[taken] != (&value == &row.back() ? '\n' : ',')) {
-          return differs("axes.csv", i);
-        }
-        rest.remove_prefix(taken + 1);
-      }
-      for (std::size_t axis = 0; axis < places.size(); ++axis) {
-        if (!(std::abs(row[axis + 1] - places[axis]) <= kWritten)) {
-          return differs("axes.csv", i);
-        }
+      if (!std::getline(table, line) || !says(line, places)) {
+        return differs("axes.csv", i);
       }
     }
-    return rest.empty() ? Result<void>() : differs("axes.csv", places_.total());
+    return !std::getline(table, line) ? Result<void>() : differs("axes.csv", places_.total());
   }
 
  private:
+  /// Does a line of the table have these places behind its time?
+  static bool says(std::string_view line, const AxisPlaces& places) {
+    std::array<double, kPathAxes.size() + 2> row{};
+    for (double& value : row) {
+      const auto [end, failed] = std::from_chars(line.data(), line.data() + line.size(), value);
+      const auto taken = static_cast<std::size_t>(end - line.data());
+      const bool last = &value == &row.back();
+      if (failed != std::errc() || (last ? taken != line.size() : taken >= line.size() || line[taken] != ',')) {
+        return false;
+      }
+      line.remove_prefix(last ? taken : taken + 1);
+    }
+    for (std::size_t axis = 0; axis < places.size(); ++axis) {
+      if (!(std::abs(row[axis + 1] - places[axis]) <= kWritten)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   static Error differs(const std::string& file, std::int64_t place) {
     return {ErrorCode::io,
             fmt::format("{}: what was written reads back differently at {}: nothing is kept; is the disk "
@@ -299,6 +298,28 @@ std::string text_of(const char* name, const Deviation& deviation) {
                      deviation.most[0], deviation.most[1], deviation.most[2], deviation.most[3], deviation.most[4]);
 }
 
+/// Refuses, before anything is written, what the disk has no room for; says what takes long.
+Result<void> check_room(const std::string& folder, std::int64_t set_points, std::int64_t blocks) {
+  constexpr double kBytesPerSetPoint = 125;  // a line of axes.csv and two frames
+  constexpr double kBytesPerBlock = 210;     // of both NC programs
+  constexpr double kGigabyte = 1e9;
+  const double gigabytes =
+      (kBytesPerSetPoint * static_cast<double>(set_points) + kBytesPerBlock * static_cast<double>(blocks)) / kGigabyte;
+  std::error_code failed;
+  const std::filesystem::path parent = std::filesystem::absolute(folder, failed).parent_path();
+  const auto space = std::filesystem::space(parent, failed);
+  if (!failed && static_cast<double>(space.available) / kGigabyte < gigabytes) {
+    return Error{ErrorCode::io,
+                 fmt::format("{}: {} set-points take some {:.3g} GB, the disk has {:.3g} GB free; make "
+                             "room, or give a folder elsewhere",
+                             folder, set_points, gigabytes, static_cast<double>(space.available) / kGigabyte)};
+  }
+  if (gigabytes >= 1) {
+    warn(fmt::format("{}: {} set-points take some {:.3g} GB", folder, set_points, gigabytes));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<int> export_path(const std::string& path, const std::string& folder_path, double block_ms,
@@ -315,6 +336,7 @@ Result<int> export_path(const std::string& path, const std::string& folder_path,
     return Error{ErrorCode::bad_argument, fmt::format("--block-ms {}: must be a whole number of servo periods of {} ms",
                                                       block_ms, 1000 / to_double(plan.line.rate_hz))};
   }
+  GRAVURE_CHECK(check_room(folder_path, set_points_of(plan), (set_points_of(plan) - 2) / per_block + 1));
   cancel_token();  // before there is a folder
   GRAVURE_TRY(FolderOutput folder, FolderOutput::create(folder_path));
   Exporter exporter(*program, per_block, folder);

@@ -10,6 +10,7 @@
 
 #include "chunk_run.hpp"
 #include "gravure/core/path_expand.hpp"
+#include "gravure/core/set_point_walk.hpp"
 #include "gravure/core/units.hpp"
 #include "gravure/kinematics/machines.hpp"
 #include "path_limits.hpp"
@@ -46,30 +47,17 @@ class Figure {
 /// The windows of set-points of a program, line after line.
 class WindowWalk {
  public:
-  explicit WindowWalk(LineSource& program) : program_(program), total_(set_points_of(program.header().plan)) {}
+  explicit WindowWalk(LineSource& program) : points_(program) {}
   Result<PathWindow> window(std::int64_t line) {
     PathWindow window;
     for (std::int64_t i = 0; i < 4; ++i) {
-      GRAVURE_TRY(window[static_cast<std::size_t>(i)], point(std::clamp<std::int64_t>(line - 1 + i, 0, total_ - 1)));
+      GRAVURE_TRY(window[static_cast<std::size_t>(i)], points_.at(line - 1 + i));
     }
     return window;
   }
 
  private:
-  Result<PathSetPoint> point(std::int64_t index) {
-    constexpr std::int64_t kBlock = 4096;
-    if (block_.empty() || index < first_ || index >= first_ + static_cast<std::int64_t>(block_.size())) {
-      first_ = std::max<std::int64_t>(0, index - 4);
-      block_.resize(static_cast<std::size_t>(std::min(kBlock, total_ - first_)));
-      GRAVURE_CHECK(program_.read_set_points(first_, block_));
-    }
-    return block_[static_cast<std::size_t>(index - first_)];
-  }
-
-  LineSource& program_;
-  std::int64_t total_;
-  std::int64_t first_ = 0;
-  std::vector<PathSetPoint> block_;
+  SetPointWalk points_;
 };
 
 bool bit_of(std::span<const std::byte> bits, std::int64_t at) {
@@ -223,7 +211,9 @@ class PathJudge {
       report_.notes.emplace_back("the program stores no wanted points: focus, incidence and landing are not judged");
     }
     if (!report_.bits_compared) {
-      report_.notes.emplace_back("the bits are not compared with the job's");
+      report_.notes.emplace_back(
+          "the bits are not compared: which pulses of the picture fire is known to the job and its picture alone, and "
+          "they are not at hand");
     }
   }
 
