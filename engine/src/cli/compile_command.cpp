@@ -9,7 +9,7 @@
 #include "gravure/twin/unroll.hpp"
 #include "job_loader.hpp"
 #include "program_files.hpp"
-#include "texture_options.hpp"
+#include "texture_motion.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -120,7 +120,8 @@ Result<int> run_freeform(const CompileArguments& options, const Command& command
   std::vector<std::string> inputs = inputs_of(job.texture);
   inputs.push_back(options.job);
   GRAVURE_CHECK(refuse_overwrite(options.output, inputs));
-  return compile_freeform_job(job, options.output, grv_options(options.compression), command);
+  return compile_freeform_job(job, {options.output, "", grv_options(options.compression)},
+                              with_texture_memory(command));
 }
 
 Result<int> run_compile(const CompileArguments& options, const Command& command) {

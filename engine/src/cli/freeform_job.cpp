@@ -101,32 +101,28 @@ Result<Evidence> evidence_of(const ProgramHeader& header, const std::string& pat
   return evidence;
 }
 
-Json planned_json(const FreeformJob& job, const PlannedTexture& planned, const std::vector<std::string>& violations) {
-  const TimedTexture& texture = planned.texture;
-  Json json = Json::parse(plan_to_json(planned.plan));
-  Json split = split_json(surface_name(job.texture), texture.path, texture.timed.split);
-  split["method"] = job.split.method;
-  split["stops"] = stops_name(texture.machine.stops);
-  split["time_s"] = five_digits(texture.proven.path.time_s);
-  split["runs"] = texture.proven.path.runs;
-  split["slowed_runs"] = texture.proven.path.slowed;
-  split["limits"] = limits_json(job.motion, texture);
-  json["texture"] = split;
-  json["violations"] = violations;
-  return json;
-}
-
 /// verify would not pass it.
-void refuse_texture(const std::vector<std::string>& violations, const Command& command) {
+void refuse_texture(const FreeformJob& job, const TextureOutcome& outcome, const Command& command) {
   if (command.json) {
-    print_json({{"program", nullptr}, {"violations", violations}});
+    Json json = outcome_json(job, outcome);
+    json["program"] = nullptr;
+    print_json(json);
     return;
   }
-  std::string text;
-  for (const std::string& violation : violations) {
-    text += "violation: " + violation + "\n";
-  }
-  print(text + "NOT within limits, nothing was written: give a smaller sigma, slower axes or wider limits\n");
+  print(violations_text(outcome.violations) +
+        "NOT within limits, nothing was written: give a smaller sigma, slower axes or wider limits\n");
+}
+
+Json compiled_json(const FreeformJob& job, const PlannedTexture& planned, const std::string& output,
+                   const CompiledPath& made) {
+  const PathSpacing& spacing = made.spacing;
+  Json json = outcome_json(job, planned.outcome);
+  json["program"] = output;
+  json["periods"] = made.header.plan.rotary.lines_per_revolution;
+  json["proofs"] = planned.outcome.seven.proven.proofs;
+  json.update(spacing_json(spacing));
+  json["least_slots"] = spacing.least_slots;
+  return json;
 }
 
 }  // namespace
@@ -137,52 +133,40 @@ bool is_freeform_job(const std::string& path) {
 
 Result<int> plan_freeform_job(const std::string& path, const Command& command) {
   GRAVURE_TRY(const FreeformJob job, read_freeform_job(path));
-  GRAVURE_TRY(const PlannedTexture planned, plan_texture(job));
-  const std::vector<std::string> violations = violations_of(job, planned.texture);
+  GRAVURE_TRY(const PlannedTexture planned, plan_texture(job, Depth::choice, command));
+  const TextureOutcome& outcome = planned.outcome;
   if (command.json) {
-    print_json(planned_json(job, planned, violations));
+    Json json = Json::parse(plan_to_json(planned.plan));
+    json["texture"] = outcome_json(job, outcome);
+    json["texture"].erase("violations");
+    json["violations"] = outcome.violations;
+    print_json(json);
   } else {
-    std::string text = plan_text(planned.plan);
-    text += split_text(planned.texture.path, planned.texture.timed.split, job.split,
-                       how_sigma(job.split, planned.texture.timed));
-    text += seven_text(planned.texture) + limits_text(job.motion, planned.texture);
-    for (const std::string& violation : violations) {
-      text += "violation: " + violation + "\n";
-    }
-    print(text);
+    print(plan_text(planned.plan) + outcome_text(job, outcome));
   }
-  return violations.empty() ? kDone : kLimitViolated;
+  return outcome.violations.empty() ? kDone : kLimitViolated;
 }
 
-Result<int> compile_freeform_job(const FreeformJob& job, const std::string& output, const GrvOptions& grv,
-                                 const Command& command) {
-  GRAVURE_TRY(const PlannedTexture planned, plan_texture(job));
-  if (const std::vector<std::string> violations = violations_of(job, planned.texture); !violations.empty()) {
-    refuse_texture(violations, command);
+Result<int> compile_freeform_job(const FreeformJob& job, const FreeformOutputs& outputs, const Command& command) {
+  GRAVURE_TRY(const PlannedTexture planned, plan_texture(job, Depth::times, command));
+  if (!planned.outcome.violations.empty()) {
+    refuse_texture(job, planned.outcome, command);
     return kLimitViolated;
   }
-  GRAVURE_TRY(const CompiledPath made, compile_texture(job, planned, output, grv));
-  const PathSpacing& spacing = made.spacing;
-  const Plan& plan = made.header.plan;
+  GRAVURE_TRY(const CompiledPath made, compile_texture(job, planned, outputs.program, outputs.grv));
+  if (!outputs.points.empty()) {
+    const texture::TimedSplit& timed = planned.outcome.seven.timed;
+    GRAVURE_CHECK(write_points(outputs.points, timed.split, timed.axes, job.split.focus_axis));
+  }
   if (command.json) {
-    print_json({{"program", output},
-                {"time_s", to_double(plan.job.duration_s)},
-                {"periods", plan.rotary.lines_per_revolution},
-                {"sigma_um", figure(planned.texture.timed.split.sigma_mm * kUmPerMm)},
-                {"proofs", planned.texture.proven.proofs},
-                {"pulses", spacing.pulses},
-                {"fired_pulses", spacing.fired},
-                {"spacing_um", {{"max", spacing.max_error_um}, {"rms", spacing.rms_error_um}}},
-                {"half_slot_um", spacing.half_slot_um},
-                {"max_speed_mm_s", spacing.max_speed_mm_s},
-                {"least_slots", spacing.least_slots}});
+    print_json(compiled_json(job, planned, outputs.program, made));
     return kDone;
   }
-  print(fmt::format(
-      "{}: {:.3f} s in {} periods of {} us; {} of {} pulses fire\n"
-      "spacing: {:.4g} um off at most, {:.4g} rms, half a slot {:.4g}; spot at most {:.4g} mm/s\n",
-      output, to_double(plan.job.duration_s), plan.rotary.lines_per_revolution, job.motion.servo_us, spacing.fired,
-      spacing.pulses, spacing.max_error_um, spacing.rms_error_um, spacing.half_slot_um, spacing.max_speed_mm_s));
+  const PathSpacing& spacing = made.spacing;
+  const Plan& plan = made.header.plan;
+  print(fmt::format("{}: {:.3f} s in {} periods of {} us; {} of {} pulses fire\nspacing: {}\n", outputs.program,
+                    to_double(plan.job.duration_s), plan.rotary.lines_per_revolution, job.motion.servo_us,
+                    spacing.fired, spacing.pulses, spacing_text(spacing)));
   return kDone;
 }
 

@@ -20,9 +20,14 @@ bool is_freeform_job(const std::string& path);
 /// `plan JOB`.
 Result<int> plan_freeform_job(const std::string& path, const Command& command);
 
+/// What a compilation writes.
+struct FreeformOutputs {
+  std::string program;
+  std::string points;  ///< CSV of every point; empty: none
+  GrvOptions grv;
+};
 /// `compile JOB` and `texture compile`, which says what a job would.
-Result<int> compile_freeform_job(const FreeformJob& job, const std::string& output, const GrvOptions& grv,
-                                 const Command& command);
+Result<int> compile_freeform_job(const FreeformJob& job, const FreeformOutputs& outputs, const Command& command);
 
 /// Judges a program that follows a path, as `verify` does; `landed` is told of every pulse.
 Result<PathReport> judge_path_file(LineSource& program, const std::string& path, const std::string& folder,

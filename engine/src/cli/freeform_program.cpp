@@ -16,16 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The number as it was given, or to fifteen digits.
-Rational exact(double value) {
-  return parse_decimal(fmt::format("{:.15g}", value)).value();
-}
-
-/// Of degrees that have been rad: to ten digits they are what was given.
-Rational exact_degrees(double rad) {
-  return parse_decimal(fmt::format("{:.10g}", rad * kDegreesPerRad)).value();
-}
-
 bool is_level(const AxesSettings& axes) {
   return axes.tilt_deg == std::vector<double>{0, 0};
 }
@@ -46,7 +36,10 @@ Result<void> check_programmable(const FreeformJob& job) {
 }
 
 PathAxisPlan axis_plan(std::size_t axis, const texture::AxisBounds& bounds) {
-  const auto number = axis_turns(axis) ? exact_degrees : exact;
+  // Degrees have been rad: to ten digits they are what was given.
+  const auto number = [turns = axis_turns(axis)](double value) {
+    return turns ? exact_decimal(value * kDegreesPerRad, 10) : exact_decimal(value);
+  };
   PathAxisPlan plan;
   plan.limits = {number(bounds.speed), number(bounds.acceleration), number(bounds.jerk)};
   return plan;
@@ -58,20 +51,20 @@ PathPlan path_plan_of(const FreeformJob& job, const WantedTexture& wanted) {
   for (std::size_t axis = 0; axis < limits.size(); ++axis) {
     path.axes[axis] = axis_plan(axis, limits[axis]);
   }
-  const Rational reach = exact(job.split.displacement_mm);
+  const Rational reach = exact_decimal(job.split.displacement_mm);
   for (const std::size_t axis : {5U, 6U}) {
     path.axes[axis].least = -reach;
     path.axes[axis].most = reach;
   }
-  path.max_focus_offset_um = exact(job.split.fod_um);
-  path.max_incidence_deg = exact(job.split.bia_deg);
+  path.max_focus_offset_um = exact_decimal(job.split.fod_um);
+  path.max_incidence_deg = exact_decimal(job.split.bia_deg);
   path.max_displacement_mm = reach;
   if (job.split.landing_um) {
-    path.max_landing_um = exact(*job.split.landing_um);
+    path.max_landing_um = exact_decimal(*job.split.landing_um);
   }
   path.machine = job.axes.signs == "texturing" ? "texturing" : "post_processor";
   for (std::size_t i = 0; i < 3; ++i) {
-    path.rotary_centre_mm[i] = exact(job.axes.origin_mm[i]);
+    path.rotary_centre_mm[i] = exact_decimal(job.axes.origin_mm[i]);
   }
   path.surface = surface_name(job.texture);
   if (!is_level(job.axes)) {
@@ -140,25 +133,24 @@ Result<Plan> plan_of(const FreeformJob& job, const WantedTexture& wanted, std::i
   request.title = job.job.title;
   request.laser = job.job.laser;
   request.clock_multiplier = job.job.fpga.clock_multiplier;
-  request.servo_period_us = exact(job.motion.servo_us);
-  request.pulse_pitch_um = exact(*job.texture.pitch_um);
+  request.servo_period_us = exact_decimal(job.motion.servo_us);
+  request.pulse_pitch_um = exact_decimal(*job.texture.pitch_um);
   request.path = path_plan_of(job, wanted);
   GRAVURE_TRY(Plan plan,
               make_path_plan(request, instants, wanted.pulses.count, static_cast<std::int64_t>(wanted.targets.size())));
   if (wanted.picture) {
-    plan.rotary.line_pitch_um = exact(wanted.picture->line_mm * kUmPerMm);
+    plan.rotary.line_pitch_um = exact_decimal(wanted.picture->line_mm * kUmPerMm);
   }
   return plan;
 }
 
-Result<PlannedTexture> plan_texture(const FreeformJob& job) {
+Result<PlannedTexture> plan_texture(const FreeformJob& job, Depth depth, const Command& command) {
   GRAVURE_CHECK(check_programmable(job));
   PlannedTexture planned;
-  GRAVURE_TRY(planned.texture, time_texture(job));
-  const texture::TimedSplit& timed = planned.texture.timed;
-  GRAVURE_TRY(planned.wanted, wanted_of(job, planned.texture.path, timed.split.targets, timed.targets()));
-  GRAVURE_TRY(planned.plan,
-              placed(job, "motion", plan_of(job, planned.wanted, planned.texture.proven.path.motion->instants())));
+  GRAVURE_TRY(planned.outcome, outcome_of(job, depth, command));
+  const TimedTexture& seven = planned.outcome.seven;
+  GRAVURE_TRY(planned.wanted, wanted_of(job, seven.path, seven.timed.split.targets, seven.timed.targets()));
+  GRAVURE_TRY(planned.plan, placed(job, "motion", plan_of(job, planned.wanted, seven.proven.path.motion->instants())));
   return planned;
 }
 
@@ -175,7 +167,7 @@ Result<CompiledPath> compile_texture(const FreeformJob& job, const PlannedTextur
   GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
               create_grv(output, 1, header.plan.rotary.lines_per_revolution, header.line_bytes(), grv));
   ProgressBar bar("compile");
-  return compile_path(std::move(header), *planned.texture.proven.path.motion, planned.wanted.pulses,
+  return compile_path(std::move(header), *planned.outcome.seven.proven.path.motion, planned.wanted.pulses,
                       planned.wanted.targets, *sink, &cancel_token(), &bar);
 }
 

@@ -8,7 +8,7 @@
 #include "gravure/formats/freeform_job.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/pipeline/compile_path.hpp"
-#include "texture_motion.hpp"
+#include "texture_outcome.hpp"
 
 namespace gravure::cli {
 
@@ -32,11 +32,11 @@ Result<Plan> plan_of(const FreeformJob& job, const WantedTexture& wanted, std::i
 
 /// A job with its motion and plan, ready to be compiled.
 struct PlannedTexture {
-  TimedTexture texture;
+  TextureOutcome outcome;
   WantedTexture wanted;
   Plan plan;
 };
-Result<PlannedTexture> plan_texture(const FreeformJob& job);
+Result<PlannedTexture> plan_texture(const FreeformJob& job, Depth depth, const Command& command);
 
 /// Writes the program; with the job file's text, and its sources, where there is one.
 Result<CompiledPath> compile_texture(const FreeformJob& job, const PlannedTexture& planned, const std::string& output,

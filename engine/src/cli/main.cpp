@@ -190,7 +190,10 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
-    return report({gravure::ErrorCode::io, "out of memory: lower --memory or --threads"}, json);
+    return report({gravure::ErrorCode::io,
+                   "out of memory: give a smaller job, or less to --memory and --threads where "
+                   "the verb has them"},
+                  json);
   } catch (const std::exception& error) {
     return report({gravure::ErrorCode::io, std::string("internal: ") + error.what()}, json);
   }

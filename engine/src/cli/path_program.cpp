@@ -88,12 +88,29 @@ std::string text_of(const PathReport& report) {
   return text;
 }
 
-/// Contours have a pulse in every place of one.
+/// What follows contours or a curve, not a picture, has a pulse in every place of one, whatever it was made from.
 PathPulses all_pulses_of(const PathPlan& path) {
   return {0, path.pulses, std::vector<std::byte>(static_cast<std::size_t>((path.pulses + 7) / 8), std::byte{0xFF})};
 }
 
 }  // namespace
+
+Rational exact_decimal(double value, int digits) {
+  return parse_decimal(fmt::format("{:.{}g}", value, digits)).value();
+}
+
+Json spacing_json(const PathSpacing& spacing) {
+  return {{"pulses", spacing.pulses},
+          {"fired_pulses", spacing.fired},
+          {"spacing_um", {{"max", spacing.max_error_um}, {"rms", spacing.rms_error_um}}},
+          {"half_slot_um", spacing.half_slot_um},
+          {"max_speed_mm_s", spacing.max_speed_mm_s}};
+}
+
+std::string spacing_text(const PathSpacing& spacing) {
+  return fmt::format("{:.4g} um off at most, {:.4g} rms, half a slot {:.4g}; spot at most {:.4g} mm/s",
+                     spacing.max_error_um, spacing.rms_error_um, spacing.half_slot_um, spacing.max_speed_mm_s);
+}
 
 Result<PathPulses> all_pulses(const std::string& key, double pitch_mm, double length_mm) {
   constexpr double kMostPulses = 8'589'934'592.0;  // 2^33, as of pictures: their bits take 1 GiB
@@ -118,7 +135,7 @@ Result<PathReport> judge_path_program(LineSource& program, const VerifyPathOptio
   VerifyPathOptions options = given;
   options.cancel = &cancel_token();
   PathPulses all;
-  if (const Plan& plan = program.header().plan; options.wanted == nullptr && plan.mode == Mode::zones) {
+  if (const Plan& plan = program.header().plan; options.wanted == nullptr && !plan.path->picture) {
     all = all_pulses_of(*plan.path);
     options.wanted = &all;
   }

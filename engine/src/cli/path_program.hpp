@@ -6,6 +6,7 @@
 #include "gravure/core/path_motion.hpp"
 #include "gravure/core/program.hpp"
 #include "gravure/formats/tiff_writer.hpp"
+#include "gravure/pipeline/compile_path.hpp"
 #include "gravure/twin/verify_path.hpp"
 #include "verb.hpp"
 
@@ -13,6 +14,13 @@ namespace gravure::cli {
 
 /// A and C of kPathAxes, not the others.
 bool axis_turns(std::size_t axis);
+
+/// The decimal of so many digits that a number was given as, or is nearest to it.
+Rational exact_decimal(double value, int digits = 15);
+
+/// pulses, fired_pulses, spacing_um{max, rms}, half_slot_um, max_speed_mm_s of a compiled path; and the same in words.
+Json spacing_json(const PathSpacing& spacing);
+std::string spacing_text(const PathSpacing& spacing);
 
 /// A pulse every pitch along a path, all of which fire; out_of_range, naming `key`, for none or more than 2^33.
 Result<PathPulses> all_pulses(const std::string& key, double pitch_mm, double length_mm);

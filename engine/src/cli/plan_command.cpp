@@ -13,6 +13,7 @@
 #include "path_program.hpp"
 #include "plan_text.hpp"
 #include "program_files.hpp"
+#include "texture_motion.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -185,6 +186,7 @@ void add_plan(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "plan", "Clock tree, line, A-B solution, drift and time of a job");
   const auto path = std::make_shared<std::string>();
   verb->add_option("JOB", *path, "Job file")->required();
+  add_texture_memory(*verb, command);
   verb->callback([&command, path] {
     command.run = [&command, path]() -> Result<int> {
       if (is_freeform_job(*path)) {

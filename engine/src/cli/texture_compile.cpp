@@ -15,12 +15,14 @@ struct TextureCompileArguments {
   FreeformJob job;
   std::vector<std::string> limits;
   std::string output;
+  std::string points;
 };
 
 Result<int> run_texture_compile(TextureCompileArguments options, const Command& command) {
-  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of(options.job.texture)));
+  GRAVURE_CHECK(
+      refuse_overwrite({{"--output", options.output}, {"--points", options.points}}, inputs_of(options.job.texture)));
   GRAVURE_CHECK(set_limits(options.limits, options.job.motion));
-  return compile_freeform_job(options.job, options.output, {}, command);
+  return compile_freeform_job(options.job, {options.output, options.points, {}}, command);
 }
 
 }  // namespace
@@ -40,6 +42,8 @@ void add_texture_compile(CLI::App& texture, Command& command) {
   add_axes_options(*verb, options->job.axes);
   add_motion_options(*verb, options->job, options->limits);
   verb->add_option("-o,--output", options->output, "Program file to write (.grv)")->required();
+  add_points_option(*verb, options->points);
+  add_texture_memory(*verb, command);
   verb->add_option("--title", job.title, "What the program calls itself")->capture_default_str();
   verb->add_option("--seed-hz", job.laser.seed_hz, "Seed pulses a second")
       ->check(integer_from(1, 1'000'000'000'000))

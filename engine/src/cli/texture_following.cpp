@@ -22,7 +22,25 @@ std::string error_text(const texture::FollowingError& error, const char* unit, d
                      static_cast<double>(error.instant) * servo_s, error.rms * per_unit);
 }
 
+texture::SevenServos servos_of(const MotionSettings& settings) {
+  texture::SevenServos servos = texture::assumed_servos();
+  for (std::size_t axis = 0; axis < servos.size(); ++axis) {
+    const GivenServo& given = settings.servos[axis];
+    servos[axis] = {given.natural_hz.value_or(servos[axis].natural_hz), given.damping.value_or(servos[axis].damping)};
+  }
+  return servos;
+}
+
 }  // namespace
+
+Result<void> refuse_twice(std::string_view option, std::size_t axis, std::array<bool, kPathAxes.size()>& given) {
+  if (given[axis]) {
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("{} {}=...: stands there twice; give it once an axis", option, kPathAxes[axis])};
+  }
+  given[axis] = true;
+  return {};
+}
 
 Result<AxisSetting> axis_setting(const std::string& option, const std::string& text, std::string_view form) {
   const auto axis = std::find(kPathAxes.begin(), kPathAxes.end(), text.substr(0, text.find('=')));
@@ -40,28 +58,32 @@ Result<AxisSetting> axis_setting(const std::string& option, const std::string& t
   return setting;
 }
 
-void add_servo_options(CLI::App& verb, ServoOptions& options) {
-  verb.add_option("--servo", options.servos,
+void add_servo_option(CLI::App& verb, std::vector<std::string>& servos) {
+  verb.add_option("--servo", servos,
                   "AXIS=HZ,DAMPING of one axis' position loop, for what it will be behind; as often as needed");
 }
 
-Result<Following> servos_of(const ServoOptions& options) {
-  Following following;
-  following.servos = texture::assumed_servos();
-  for (const std::string& text : options.servos) {
+Result<void> set_servos(const std::vector<std::string>& servos, MotionSettings& motion) {
+  std::array<bool, kPathAxes.size()> given{};
+  for (const std::string& text : servos) {
     GRAVURE_TRY(const AxisSetting setting, axis_setting("--servo", text, "AXIS=HZ,DAMPING"));
-    following.servos[setting.axis] = {setting.numbers[0], setting.numbers[1]};
-    following.stated[setting.axis] = true;
+    GRAVURE_CHECK(refuse_twice("--servo", setting.axis, given));
+    motion.servos[setting.axis] = {setting.numbers[0], setting.numbers[1]};
   }
-  GRAVURE_CHECK(texture::check_servos(following.servos));
-  return following;
+  return texture::check_servos(servos_of(motion));
 }
 
-Result<void> predict(Following& following, const PathMotion& motion, const texture::PathMachine& machine) {
+Result<Following> predict(const MotionSettings& settings, const PathMotion& motion,
+                          const texture::PathMachine& machine) {
+  Following following;
+  following.servos = servos_of(settings);
+  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+    following.stated[axis] = settings.servos[axis].natural_hz && settings.servos[axis].damping;
+  }
   GRAVURE_TRY(const texture::RotaryTable table, texture::rotary_table(machine.machine));
   GRAVURE_TRY(following.errors,
               texture::predict_following(motion, following.servos, table, machine.servo_s, cancel_token()));
-  return {};
+  return following;
 }
 
 Json following_json(const Following& following, double servo_s) {

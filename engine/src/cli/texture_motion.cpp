@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
+
+#include "path_program.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -24,19 +27,69 @@ Result<texture::PathMachine> path_machine_of(const FreeformJob& job) {
   return machine;
 }
 
-Result<texture::TimedSplit> timed_split(const SplitSettings& settings, const texture::Surface& surface,
-                                        const texture::TexturePath& path, const texture::PathMachine& machine) {
+/// By the sigma that is given, else by the published rule.
+Result<texture::Split> plain_split(const SplitSettings& settings, const texture::Surface& surface,
+                                   const texture::TexturePath& path) {
   const std::unique_ptr<texture::Splitter> splitter = splitter_of(settings);
   const texture::DeviationLimits limits = limits_of(settings);
+  return settings.sigma_um
+             ? texture::split_path(*splitter, surface, path, limits, *settings.sigma_um / kUmPerMm, cancel_token())
+             : texture::split_by_published_rule(*splitter, surface, path, limits, cancel_token());
+}
+
+Result<texture::TimedSplit> timed_split(const SplitSettings& settings, const texture::Surface& surface,
+                                        const texture::TexturePath& path, const texture::PathMachine& machine) {
   if (!settings.sigma_um && settings.rule == "time") {
-    return texture::split_by_time(*splitter, surface, path, limits, machine, settings.time_share_percent / kPercent,
-                                  cancel_token());
+    return texture::split_by_time(*splitter_of(settings), surface, path, limits_of(settings), machine,
+                                  settings.time_share_percent / kPercent, cancel_token());
   }
-  GRAVURE_TRY(texture::Split split,
-              settings.sigma_um
-                  ? texture::split_path(*splitter, surface, path, limits, *settings.sigma_um / kUmPerMm, cancel_token())
-                  : texture::split_by_published_rule(*splitter, surface, path, limits, cancel_token()));
+  GRAVURE_TRY(texture::Split split, plain_split(settings, surface, path));
   return texture::time_split(std::move(split), path, machine, cancel_token());
+}
+
+/// What planning takes at its peak: measured, with the rule that times several sigmas.
+Result<void> check_memory(std::size_t points, const Command& command) {
+  constexpr std::int64_t kBytesPerPoint = 1200;
+  constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+  const std::int64_t needed_mib = static_cast<std::int64_t>(points) * kBytesPerPoint / kMiB + 1;
+  if (needed_mib > command.memory_mib) {
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("a path of {} points: planning takes some {} MiB of memory, --memory allows {}: take fewer "
+                    "points (a lower order, longer steps, a wider pitch), or allow more",
+                    points, needed_mib, command.memory_mib)};
+  }
+  return {};
+}
+
+/// What a sigma of one's own can do: below, the filter does nothing; above, it only takes memory.
+Result<void> check_sigma(const SplitSettings& settings, const texture::TexturePath& path) {
+  constexpr double kPublished_um = 30'000;
+  const double step_um = path.step_mm * kUmPerMm;
+  const double least_um = step_um / 10;
+  const double most_um = std::max(kPublished_um, static_cast<double>(path.points_mm.size() - 1) * step_um);
+  if (settings.sigma_um && !(*settings.sigma_um >= least_um && *settings.sigma_um <= most_um)) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("sigma_um = {:.6g}: must be {:.6g} (a tenth of the {:.6g} um from point to point) to "
+                             "{:.6g} (the length of the path, or 30000)",
+                             *settings.sigma_um, least_um, step_um, most_um)};
+  }
+  return {};
+}
+
+/// Surface and path, and whether the sigma that is given suits them.
+Result<TimedTexture> surface_and_path(const FreeformJob& job, const Command& command) {
+  TimedTexture texture;
+  GRAVURE_TRY(texture.surface, placed(job, "surface", surface_of(job.texture)));
+  GRAVURE_TRY(texture.path, placed(job, "texture", path_of(job.texture)));
+  GRAVURE_CHECK(placed(job, "texture", check_memory(texture.path.points_mm.size(), command)));
+  GRAVURE_CHECK(placed(job, "split.sigma_um", check_sigma(job.split, texture.path)));
+  return texture;
+}
+
+const char* limit_unit(const texture::LimitUse& use) {
+  constexpr const char* kUnits[2][3] = {{"mm/s", "mm/s^2", "mm/s^3"}, {"rad/s", "rad/s^2", "rad/s^3"}};
+  return kUnits[axis_turns(use.axis) ? 1 : 0][static_cast<std::size_t>(use.kind)];
 }
 
 /// Stated, or that of published_limits().
@@ -48,13 +101,37 @@ std::string_view limit_source(const MotionSettings& motion, const texture::Limit
   return bound ? "stated" : texture::source_name(texture::source_of_published(use.axis, use.kind));
 }
 
+/// The section that a message is about, by how it begins; else `key`.
+std::string key_of(const Job& job, std::string_view message, std::string_view key) {
+  constexpr std::string_view kAxis = "axis ";
+  if (message.starts_with(kAxis)) {
+    const std::string section = "axis." + std::string(message.substr(kAxis.size(), 1));
+    for (const auto& [name, place] : job.places) {
+      const bool is_limit = name.starts_with(section + ".max_");
+      if (is_limit && message.find(name.substr(section.size() + 5, 4)) < message.find(',')) {
+        return name;
+      }
+    }
+    return job.places.count(section) != 0 ? section : "motion";
+  }
+  constexpr std::pair<std::string_view, std::string_view> kBeginnings[] = {
+      {"surface", "surface"},     {"mesh", "surface"},    {"height", "surface"}, {"the stages' path", "surface"},
+      {"servo period", "motion"}, {"point ", "clamping"}, {"sigma", "split"}};
+  for (const auto& [beginning, section] : kBeginnings) {
+    if (message.starts_with(beginning)) {
+      return std::string(section);
+    }
+  }
+  return std::string(key);
+}
+
 }  // namespace
 
 Error placed_error(const FreeformJob& job, std::string_view key, Error error) {
   if (error.code == ErrorCode::cancelled) {
     return error;
   }
-  std::string at(key);
+  std::string at = key_of(job.job, error.message, key);
   for (const auto& [name, place] : job.job.places) {
     const std::string last = name.substr(name.find_last_of('.') + 1) + " ";
     const bool begins = error.message.rfind(name + " ", 0) == 0 || error.message.rfind(last, 0) == 0;
@@ -80,22 +157,45 @@ texture::SevenLimits seven_limits_of(const MotionSettings& motion) {
   return limits;
 }
 
-Result<TimedTexture> time_texture(const FreeformJob& job) {
-  TimedTexture texture;
-  GRAVURE_TRY(texture.machine, path_machine_of(job));
-  GRAVURE_TRY(const std::unique_ptr<texture::Surface> surface, placed(job, "surface", surface_of(job.texture)));
-  GRAVURE_TRY(texture.path, placed(job, "texture", path_of(job.texture)));
-  GRAVURE_TRY(texture.timed, placed(job, "limits", timed_split(job.split, *surface, texture.path, texture.machine)));
+void add_texture_memory(CLI::App& verb, Command& command) {
+  verb.add_option("--memory", command.memory_mib,
+                  fmt::format("Most memory that planning a texture may take in MiB ({})", kTextureMemory_mib))
+      ->check(integer_from(1, std::uint64_t{1} << 20));
+  verb.parse_complete_callback([&verb, &command] {
+    if (verb.count("--memory") == 0) {
+      command.memory_mib = kTextureMemory_mib;
+    }
+  });
+}
+
+Command with_texture_memory(const Command& command) {
+  Command texture = command;
+  texture.memory_mib = std::max(command.memory_mib, kTextureMemory_mib);
+  return texture;
+}
+
+Result<TimedTexture> time_texture(const FreeformJob& job, const Command& command) {
+  GRAVURE_TRY(TimedTexture texture, surface_and_path(job, command));
+  GRAVURE_TRY(texture.machine, placed(job, "motion", path_machine_of(job)));
+  GRAVURE_TRY(texture.timed,
+              placed(job, "limits", timed_split(job.split, *texture.surface, texture.path, texture.machine)));
   GRAVURE_TRY(texture.proven,
-              texture::prove_seven_axes(texture.timed.request(texture.machine, texture.path), cancel_token()));
+              placed(job, "motion",
+                     texture::prove_seven_axes(texture.timed.request(texture.machine, texture.path), cancel_token())));
+  return texture;
+}
+
+Result<TimedTexture> untimed_texture(const FreeformJob& job, const Command& command) {
+  GRAVURE_TRY(TimedTexture texture, surface_and_path(job, command));
+  GRAVURE_TRY(texture.timed.split, placed(job, "limits", plain_split(job.split, *texture.surface, texture.path)));
   return texture;
 }
 
 std::vector<std::string> violations_of(const FreeformJob& job, const TimedTexture& texture) {
   std::vector<std::string> found = texture::violations(texture.timed.split.most, limits_of(job.split));
   for (const texture::LimitUse& use : texture::broken(texture.proven.uses)) {
-    found.push_back(fmt::format("axis {}: {} {:.6g}, allowed {:.6g}, at {:.4f} s", kPathAxes[use.axis],
-                                texture::limit_name(use.kind), use.most, use.allowed,
+    found.push_back(fmt::format("axis {}: {} {:.6g}, allowed {:.6g} {}, at {:.4f} s", kPathAxes[use.axis],
+                                texture::limit_name(use.kind), use.most, use.allowed, limit_unit(use),
                                 static_cast<double>(use.instant) * texture.machine.servo_s));
   }
   return found;
@@ -104,6 +204,9 @@ std::vector<std::string> violations_of(const FreeformJob& job, const TimedTextur
 std::string how_sigma(const SplitSettings& settings, const texture::TimedSplit& timed) {
   if (settings.sigma_um) {
     return "";
+  }
+  if (settings.method == "adaptive") {
+    return " at most, narrowed where limits ask for it";
   }
   return settings.rule == "time"
              ? fmt::format(", within {:.6g} % of the fastest of {}", settings.time_share_percent, timed.tries)
@@ -119,6 +222,7 @@ Json limits_json(const MotionSettings& motion, const TimedTexture& texture) {
   for (const texture::LimitUse& use : texture.proven.uses) {
     limits.push_back({{"axis", kPathAxes[use.axis]},
                       {"kind", texture::limit_name(use.kind)},
+                      {"unit", limit_unit(use)},
                       {"most", five_digits(use.most)},
                       {"allowed", use.allowed},
                       {"source", limit_source(motion, use)},
@@ -137,10 +241,10 @@ std::string seven_text(const TimedTexture& texture) {
 std::string limits_text(const MotionSettings& motion, const TimedTexture& texture) {
   std::string text;
   for (const texture::LimitUse& use : texture.proven.uses) {
-    text +=
-        fmt::format("limit         {} {:<12} {:6.2f} % at {:.4f} s of {:.6g} ({})\n", kPathAxes[use.axis],
-                    texture::limit_name(use.kind), use.share() * kPercent,
-                    static_cast<double>(use.instant) * texture.machine.servo_s, use.allowed, limit_source(motion, use));
+    text += fmt::format("limit         {} {:<12} {:6.2f} % at {:.4f} s of {:.6g} {} ({})\n", kPathAxes[use.axis],
+                        texture::limit_name(use.kind), use.share() * kPercent,
+                        static_cast<double>(use.instant) * texture.machine.servo_s, use.allowed, limit_unit(use),
+                        limit_source(motion, use));
   }
   return text;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,14 +19,15 @@ double five_digits(double value);
 
 /// A texture on a surface, split, timed under the limits of all seven axes, and proved instant by instant.
 struct TimedTexture {
+  std::unique_ptr<texture::Surface> surface;
   texture::TexturePath path;
   texture::PathMachine machine;
   texture::TimedSplit timed;
   texture::ProvenPath proven;
 };
 
-/// Where the job says what the error is about: at the key that the message begins with, else at `key`. Without a job
-/// file it says so already.
+/// Where the job says what the error is about: at the key, axis or thing that the message begins with, else at `key`.
+/// Without a job file it says so already.
 Error placed_error(const FreeformJob& job, std::string_view key, Error error);
 template <class T>
 Result<T> placed(const FreeformJob& job, std::string_view key, Result<T> result) {
@@ -35,8 +37,19 @@ Result<T> placed(const FreeformJob& job, std::string_view key, Result<T> result)
 /// Those of [A] table 1 where none are given.
 texture::SevenLimits seven_limits_of(const MotionSettings& motion);
 
-/// What plan, compile and jobs do alike: by --sigma-um, else by --rule.
-Result<TimedTexture> time_texture(const FreeformJob& job);
+/// What planning may take where --memory is left out.
+inline constexpr std::int64_t kTextureMemory_mib = 1024;
+/// `--memory` of the verbs that plan textures.
+void add_texture_memory(CLI::App& verb, Command& command);
+/// Of verbs whose --memory is for the buffers of other jobs: it can allow more for a texture, not less.
+Command with_texture_memory(const Command& command);
+
+/// What plan, compile and jobs do alike: by --sigma-um, else by --rule. out_of_range for a path that would take more
+/// memory than the command allows.
+Result<TimedTexture> time_texture(const FreeformJob& job, const Command& command);
+
+/// Surface, path and split alone, by --sigma-um, else by the published rule.
+Result<TimedTexture> untimed_texture(const FreeformJob& job, const Command& command);
 
 /// The limits that are broken: of the split, and of the axes.
 std::vector<std::string> violations_of(const FreeformJob& job, const TimedTexture& texture);

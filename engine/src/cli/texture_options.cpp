@@ -14,6 +14,8 @@
 namespace gravure::cli {
 namespace {
 
+constexpr double kMostPlace_mm = 1e4;  ///< of a workpiece, as in jobs
+
 template <std::size_t count>
 CLI::Validator one_of(const std::array<std::string_view, count>& words) {
   return CLI::IsMember(std::vector<std::string>(words.begin(), words.end()));
@@ -32,13 +34,14 @@ void add_texture_options(CLI::App& verb, TextureSettings& options) {
   add_length(verb, "--pixel-y-um", options.pixel_y_um, 1e9, "The same along y (default: as along x)");
   verb.add_option("--height-mm", options.height_mm, "z of its sample 0 and of its largest one, or of 1.0")
       ->expected(2)
-      ->check(number_from(-1e6, 1e6));
+      ->check(number_from(-kMostPlace_mm, kMostPlace_mm));
   verb.add_option("--mesh", options.mesh, "Surface from the triangles of an STL or PLY file, seen along z");
   add_length(verb, "--max-slope-deg", options.max_slope_deg, 90, "Steepest slope of the surface that is taken")
       ->capture_default_str();
   verb.add_option("--hilbert-order", options.hilbert_order, "Hilbert curve of 4^N points as path")
       ->check(integer_from(1, kMostHilbertOrder));
-  add_length(verb, "--size-mm", options.size_mm, 1e6, "Side of the square of that curve")->capture_default_str();
+  add_length(verb, "--size-mm", options.size_mm, kMostPlace_mm, "Side of the square of that curve")
+      ->capture_default_str();
   verb.add_option("--path", options.path, "Path from a file: CSV with x_mm, y_mm, a corner a line");
   verb.add_option("--svg", options.svg, "Path from the strokes of an SVG drawing, dark between them");
   add_length(verb, "--tolerance-um", options.tolerance_um, 1e6, "How far its curves may be cut")->capture_default_str();
@@ -91,7 +94,7 @@ void add_axes_options(CLI::App& verb, AxesSettings& options) {
       ->capture_default_str();
   verb.add_option("--origin-mm", options.origin_mm, "Where A and C meet, in the workpiece: x y z")
       ->expected(3)
-      ->check(number_from(-1e6, 1e6));
+      ->check(number_from(-kMostPlace_mm, kMostPlace_mm));
   verb.add_option("--tilt-deg", options.tilt_deg, "Clamping: turned about x, then about y, by so much")
       ->expected(2)
       ->check(number_from(-180, 180));
@@ -117,8 +120,10 @@ void add_motion_options(CLI::App& verb, FreeformJob& job, std::vector<std::strin
 }
 
 Result<void> set_limits(const std::vector<std::string>& limits, MotionSettings& motion) {
+  std::array<bool, kPathAxes.size()> given{};
   for (const std::string& limit : limits) {
     GRAVURE_TRY(const AxisSetting setting, axis_setting("--limit", limit, "AXIS=SPEED,ACCELERATION,JERK"));
+    GRAVURE_CHECK(refuse_twice("--limit", setting.axis, given));
     motion.limits[setting.axis] = {setting.numbers[0], setting.numbers[1], setting.numbers[2]};
   }
   return {};
@@ -142,6 +147,10 @@ kinematics::Branch branch_of(const AxesSettings& options) {
 Result<std::vector<texture::SevenAxes>> axes_of(const AxesSettings& options, const texture::Split& split) {
   const texture::Split lying = texture::clamped(split, clamping_of(options));
   return texture::seven_axes(machine_of(options), lying.targets, lying.stages, branch_of(options));
+}
+
+void add_points_option(CLI::App& verb, std::string& file) {
+  verb.add_option("--points", file, "CSV of every point, its stages' point, axes and deviations");
 }
 
 Result<void> write_points(const std::string& file, const texture::Split& split,
@@ -170,12 +179,14 @@ Result<void> write_points(const std::string& file, const texture::Split& split,
   return output.commit();
 }
 
-Json split_json(const std::string& surface, const texture::TexturePath& path, const texture::Split& split) {
+Json split_json(const std::string& surface, const texture::TexturePath& path, const texture::Split& split,
+                const SplitSettings& options) {
   const texture::DeviationSummary& most = split.most;
   return {{"surface", surface},
+          {"split", options.method},
           {"points", split.targets.size()},
           {"step_um", figure(path.step_mm * kUmPerMm)},
-          {"sigma_um", figure(split.sigma_mm * kUmPerMm)},
+          {"sigma_um", options.method == "optimal" ? Json(nullptr) : Json(figure(split.sigma_mm * kUmPerMm))},
           {"tries", split.tries},
           {"fod_um", {{"max", figure(most.max_focus_mm * kUmPerMm)}, {"rms", figure(most.rms_focus_mm * kUmPerMm)}}},
           {"bia_deg", {{"max", figure(most.max_incidence_rad * kDegreesPerRad)}}},

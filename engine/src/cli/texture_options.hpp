@@ -69,10 +69,12 @@ Result<void> set_limits(const std::vector<std::string>& limits, MotionSettings& 
 /// The columns that every verb's --points has: i,x,y,z,xp,yp,zp,X,Y,Z,A,C,U,V,fod_um,bia_deg; W behind them where
 /// there is an axis for it.
 Result<void> write_points(const std::string& file, const texture::Split& split,
-                          std::span<const texture::SevenAxes> axes, bool focus_axis = false);
+                          std::span<const texture::SevenAxes> axes, bool focus_axis);
+void add_points_option(CLI::App& verb, std::string& file);
 
-/// surface, points, step_um, sigma_um, tries, fod_um, bia_deg and displacement_mm as all verbs print them.
-Json split_json(const std::string& surface, const texture::TexturePath& path, const texture::Split& split);
+/// surface, split, points, step_um, sigma_um, tries, fod_um, bia_deg and displacement_mm as all verbs print them.
+Json split_json(const std::string& surface, const texture::TexturePath& path, const texture::Split& split,
+                const SplitSettings& options);
 /// The same as lines for people; `how_sigma` stands behind sigma.
 std::string split_text(const texture::TexturePath& path, const texture::Split& split, const SplitSettings& options,
                        const std::string& how_sigma);

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <memory>
-#include <utility>
 
 #include "program_files.hpp"
-#include "texture_following.hpp"
-#include "texture_motion.hpp"
+#include "texture_outcome.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -16,7 +14,7 @@ namespace {
 struct TexturePlanArguments {
   FreeformJob job;
   std::vector<std::string> limits;
-  ServoOptions servos;
+  std::vector<std::string> servos;
   std::string points;
   std::string trajectory;
   std::int64_t every = 20;
@@ -50,64 +48,21 @@ Result<void> write_trajectory(const TexturePlanArguments& options, const PathMot
   return output.commit();
 }
 
-/// The stages alone on the same path.
-Result<texture::TimedPath> time_stages(const TimedTexture& seven) {
-  const std::span<const texture::SurfacePoint> targets = seven.timed.targets();
-  GRAVURE_TRY(const std::vector<texture::SevenAxes> stages_alone,
-              texture::seven_axes(seven.machine.machine, targets, targets, seven.machine.branch));
-  texture::PathTimingRequest request = seven.timed.request(seven.machine, seven.path);
-  request.axes = stages_alone;
-  return texture::time_five_axes(request, cancel_token());
-}
-
-/// Each figure to what is the same on every machine.
-void print_outcome(const TexturePlanArguments& options, const TimedTexture& seven, const texture::TimedPath& five,
-                   const Following& following, const std::vector<std::string>& violations, const Command& command) {
-  const texture::TimedPath& path = seven.proven.path;
-  const double ratio = five.time_s / path.time_s;
-  if (command.json) {
-    Json json = split_json(surface_name(options.job.texture), seven.path, seven.timed.split);
-    json["stops"] = stops_name(seven.machine.stops);
-    json["time_s"] = {{"seven_axis", five_digits(path.time_s)}, {"five_axis", five_digits(five.time_s)}};
-    json["ratio"] = five_digits(ratio);
-    json["runs"] = path.runs;
-    json["slowed_runs"] = path.slowed;
-    json["instants"] = path.motion->instants();
-    json["servo_us"] = options.job.motion.servo_us;
-    json["limits"] = limits_json(options.job.motion, seven);
-    json["following_error"] = following_json(following, seven.machine.servo_s);
-    json["violations"] = violations;
-    print_json(json);
-    return;
-  }
-  std::string text =
-      split_text(seven.path, seven.timed.split, options.job.split, how_sigma(options.job.split, seven.timed));
-  text += seven_text(seven);
-  text += fmt::format("five axes     {:.3f} s, {:.3f} times as long\n", five.time_s, ratio);
-  text += limits_text(options.job.motion, seven) + following_text(following, seven.machine.servo_s);
-  for (const std::string& violation : violations) {
-    text += "violation: " + violation + "\n";
-  }
-  print(text);
-}
-
 Result<int> plan(TexturePlanArguments options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite({{"--points", options.points}, {"--trajectory", options.trajectory}},
                                  inputs_of(options.job.texture)));
   GRAVURE_CHECK(set_limits(options.limits, options.job.motion));
-  GRAVURE_TRY(Following following, servos_of(options.servos));
-  GRAVURE_TRY(const TimedTexture seven, time_texture(options.job));
-  GRAVURE_TRY(const texture::TimedPath five, time_stages(seven));
-  GRAVURE_CHECK(predict(following, *seven.proven.path.motion, seven.machine));
+  GRAVURE_CHECK(set_servos(options.servos, options.job.motion));
+  GRAVURE_TRY(const TextureOutcome outcome, outcome_of(options.job, Depth::choice, command));
   if (!options.points.empty()) {
-    GRAVURE_CHECK(write_points(options.points, seven.timed.split, seven.timed.axes, options.job.split.focus_axis));
+    GRAVURE_CHECK(write_points(options.points, outcome.seven.timed.split, outcome.seven.timed.axes,
+                               options.job.split.focus_axis));
   }
   if (!options.trajectory.empty()) {
-    GRAVURE_CHECK(write_trajectory(options, *seven.proven.path.motion));
+    GRAVURE_CHECK(write_trajectory(options, *outcome.seven.proven.path.motion));
   }
-  const std::vector<std::string> violations = violations_of(options.job, seven);
-  print_outcome(options, seven, five, following, violations, command);
-  return violations.empty() ? kDone : kLimitViolated;
+  command.json ? print_json(outcome_json(options.job, outcome)) : print(outcome_text(options.job, outcome));
+  return outcome.violations.empty() ? kDone : kLimitViolated;
 }
 
 }  // namespace
@@ -119,8 +74,9 @@ void add_texture_plan(CLI::App& texture, Command& command) {
   add_split_options(*verb, options->job.split, "by --rule");
   add_axes_options(*verb, options->job.axes);
   add_motion_options(*verb, options->job, options->limits);
-  add_servo_options(*verb, options->servos);
-  verb->add_option("--points", options->points, "CSV of every point, its stages' point, axes and deviations");
+  add_servo_option(*verb, options->servos);
+  add_points_option(*verb, options->points);
+  add_texture_memory(*verb, command);
   verb->add_option("--trajectory", options->trajectory, "CSV of the set-points of all axes over time");
   verb->add_option("--every", options->every, "Every how many servo periods --trajectory has a line")
       ->check(integer_from(1, 1'000'000'000))

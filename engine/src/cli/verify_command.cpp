@@ -243,7 +243,7 @@ Result<int> verify_job(const VerifyArguments& options, const Command& command) {
   const std::string path = folder.path() + "/job.grv";
   if (is_freeform_job(options.input)) {
     GRAVURE_TRY(const FreeformJob job, read_freeform_job(options.input));
-    GRAVURE_TRY(const PlannedTexture planned, plan_texture(job));
+    GRAVURE_TRY(const PlannedTexture planned, plan_texture(job, Depth::motion, with_texture_memory(command)));
     GRAVURE_CHECK(compile_texture(job, planned, path, {}));
     return verify_program(path, options, command);
   }

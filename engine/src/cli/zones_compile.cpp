@@ -33,9 +33,9 @@ struct CompileOptions {
   std::string plot;
 };
 
-/// Ten digits of a number of the machine, which was made exact once and turned into other units since.
+/// Of a number of the machine, which was made exact once and turned into other units since.
 Rational ten_digits(double value) {
-  return parse_decimal(fmt::format("{:.10g}", value)).value();
+  return exact_decimal(value, 10);
 }
 
 std::optional<Rational> ten_digits(const std::optional<double>& value, double unit) {
@@ -207,12 +207,8 @@ void report(const CompileOptions& options, const LoadedZonesJob& loaded, const Z
                  {"stage_s", figure(times.stage_s)},
                  {"jump_s", figure(times.jump_s)},
                  {"mark_s", figure(times.mark_s)},
-                 {"periods", made.header.plan.rotary.lines_per_revolution},
-                 {"pulses", spacing.pulses},
-                 {"fired_pulses", spacing.fired},
-                 {"spacing_um", {{"max", spacing.max_error_um}, {"rms", spacing.rms_error_um}}},
-                 {"half_slot_um", spacing.half_slot_um},
-                 {"max_speed_mm_s", spacing.max_speed_mm_s}};
+                 {"periods", made.header.plan.rotary.lines_per_revolution}};
+    json.update(spacing_json(spacing));
     if (loaded.optics) {
       json["optics"] = optics_json(*loaded.optics, plan);
     }
@@ -231,8 +227,7 @@ void report(const CompileOptions& options, const LoadedZonesJob& loaded, const Z
   text += loaded.optics ? optics_text(*loaded.optics, plan) : "";
   text += fmt::format("time         {:.3f} s of stage moves, {:.3f} s of jumps, {:.3f} s of marks\n", times.stage_s,
                       times.jump_s, times.mark_s);
-  text += fmt::format("spacing      {:.4g} um off at most, {:.4g} rms, half a slot {:.4g}; spot at most {:.4g} mm/s\n",
-                      spacing.max_error_um, spacing.rms_error_um, spacing.half_slot_um, spacing.max_speed_mm_s);
+  text += "spacing      " + spacing_text(spacing) + "\n";
   print(text);
 }
 

@@ -55,7 +55,8 @@ Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surfac
   }
   double fastest_s = best.timed.time_s;
   int tries = 1;
-  double good_mm = best.split.sigma_mm;
+  const double published_mm = best.split.sigma_mm;
+  double good_mm = published_mm;
   double bad_mm = 0;
   const auto look = [&](double sigma_mm) -> Result<bool> {
     GRAVURE_TRY(Split split, split_path(splitter, surface, path, limits, sigma_mm, cancel));
@@ -87,6 +88,7 @@ Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surfac
   }
   best.fastest_s = fastest_s;
   best.tries = tries;
+  best.published_mm = published_mm;
   best.split.tries = splits;
   return best;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "least_time.hpp"
 #include "path_instants.hpp"
 #include "seven_axis_planner.hpp"
 #include "slow_stages.hpp"
@@ -24,7 +25,8 @@ Result<void> check_request(const PathTimingRequest& request) {
     return Error{ErrorCode::out_of_range,
                  fmt::format("servo period {} s: must be above 0, at most 1", request.servo_s)};
   }
-  return check_limits(request.limits);
+  GRAVURE_CHECK(check_limits(request.limits));
+  return check_least_time(request);
 }
 
 }  // namespace

@@ -63,6 +63,11 @@ Result<std::vector<Vector2>> resample(std::span<const Vector2> path_mm, double s
     return Error{ErrorCode::bad_argument, fmt::format("a path of {} points: must have two or more", path_mm.size())};
   }
   const std::vector<double> lengths = arc_lengths_mm(path_mm);
+  if (lengths.back() == 0) {
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("a path of {} points that are all the same, ({}, {}) mm: must have two different ones",
+                             path_mm.size(), path_mm[0].x(), path_mm[0].y())};
+  }
   const double cells = lengths.back() / step_mm;
   if (!(step_mm > 0) || !(cells < static_cast<double>(most_points))) {
     return Error{ErrorCode::bad_argument,

@@ -9,6 +9,8 @@
 namespace gravure::texture {
 namespace {
 
+constexpr double kMostHeight_mm = 10'000;  // what machines are; beyond, doubles have no nanometres left
+
 class SlopeLimited final : public Surface {
  public:
   SlopeLimited(std::unique_ptr<Surface> surface, double most_rad)
@@ -17,14 +19,22 @@ class SlopeLimited final : public Surface {
   Result<void> project(std::span<const Vector2> plane_mm, std::span<SurfacePoint> out) const override {
     GRAVURE_CHECK(surface_->project(plane_mm, out));
     for (std::size_t i = 0; i < plane_mm.size(); ++i) {
+      const double z_mm = out[i].position_mm.z();
+      if (!(std::abs(z_mm) <= kMostHeight_mm)) {
+        return Error{
+            ErrorCode::out_of_range,
+            fmt::format("surface: z = {:.6g} mm at x = {:.6g} mm, y = {:.6g} mm: must be {} to {} mm; is it in mm?",
+                        z_mm, plane_mm[i].x(), plane_mm[i].y(), -kMostHeight_mm, kMostHeight_mm)};
+      }
       const Vector3& normal = out[i].normal;
       if (!(normal.z() >= least_z_)) {
         constexpr double kDegrees = 180 / std::numbers::pi;
-        return Error{ErrorCode::out_of_range,
-                     fmt::format("surface: slope of {:.6g} deg at x = {} mm, y = {} mm, at most {:.6g} deg is allowed; "
-                                 "turn the workpiece, or allow more",
-                                 std::atan2(normal.head<2>().norm(), normal.z()) * kDegrees, plane_mm[i].x(),
-                                 plane_mm[i].y(), most_rad_ * kDegrees)};
+        return Error{
+            ErrorCode::out_of_range,
+            fmt::format("surface: slope of {:.6g} deg at x = {:.6g} mm, y = {:.6g} mm, at most {:.6g} deg is allowed; "
+                        "turn the workpiece, or allow more",
+                        std::atan2(normal.head<2>().norm(), normal.z()) * kDegrees, plane_mm[i].x(), plane_mm[i].y(),
+                        most_rad_ * kDegrees)};
       }
     }
     return {};

@@ -19,6 +19,7 @@ constexpr std::string_view kBiggestHz = "10_000_000_000";
 constexpr std::string_view kLeast = "0.000_001";
 constexpr std::string_view kMostUm = "1_000_000_000";
 constexpr std::string_view kMostMm = "1_000_000";
+constexpr std::string_view kMostPlaceMm = "10_000";
 constexpr std::string_view kOneSurface = "one of expression, height_field, mesh";
 constexpr std::string_view kOneTexture = "one of hilbert_order, path, svg, bitmap";
 constexpr std::string_view kTableOne = "that of [A] table 1";
@@ -62,6 +63,21 @@ constexpr Key axis_key(std::string_view section, std::string_view key, std::stri
   return decimal(section, key, unit, most, kTableOne, store_bound<axis, bound>);
 }
 
+using Loop = std::optional<double> GivenServo::*;
+
+template <std::size_t axis, Loop loop>
+void store_loop(FreeformJob& job, const Value& value) {
+  job.motion.servos[axis].*loop = to_double(value.number);
+}
+
+constexpr Key servo_hz_key(std::string_view section, std::string_view assumed, Store store) {
+  return decimal(section, "servo_hz", "Hz", "1_000_000", assumed, store);
+}
+
+constexpr Key servo_damping_key(std::string_view section, Store store) {
+  return decimal(section, "servo_damping", "", "100", "0.7, assumed", store);
+}
+
 std::vector<double> numbers_of(const Value& value) {
   std::vector<double> numbers;
   for (const Value& item : value.items) {
@@ -70,6 +86,8 @@ std::vector<double> numbers_of(const Value& value) {
   return numbers;
 }
 
+constexpr Loop kHz = &GivenServo::natural_hz;
+constexpr Loop kDamping = &GivenServo::damping;
 constexpr Bound kSpeed = &GivenBounds::speed;
 constexpr Bound kAcceleration = &GivenBounds::acceleration;
 constexpr Bound kJerk = &GivenBounds::jerk;
@@ -102,8 +120,8 @@ constexpr std::array kTable = {
          "height_mm",
          Type::two_decimals,
          "mm",
-         "-1_000_000",
-         kMostMm,
+         "-10_000",
+         kMostPlaceMm,
          {},
          Presence::optional,
          "samples are mm (floats alone)"},
@@ -121,7 +139,7 @@ constexpr std::array kTable = {
                  [](FreeformJob& j, const Value& v) { j.texture.bitmap = v.text; })),
     decimal("texture", "pitch_um", "um", kMostUm, kRequired,
             [](FreeformJob& j, const Value& v) { j.texture.pitch_um = to_double(v.number); }),
-    decimal("texture", "size_mm", "mm", kMostMm, "40",
+    decimal("texture", "size_mm", "mm", kMostPlaceMm, "40",
             [](FreeformJob& j, const Value& v) { j.texture.size_mm = to_double(v.number); }),
     decided(decimal("texture", "step_um", "um", kMostUm, "required with path and svg, else 100",
                     [](FreeformJob& j, const Value& v) { j.texture.step_um = to_double(v.number); })),
@@ -161,8 +179,8 @@ constexpr std::array kTable = {
          "origin_mm",
          Type::three_decimals,
          "mm",
-         "-1_000_000",
-         kMostMm,
+         "-10_000",
+         kMostPlaceMm,
          {},
          Presence::optional,
          "[0, 0, 0]"},
@@ -181,24 +199,38 @@ constexpr std::array kTable = {
     axis_key<0, kSpeed>("axis.X", "max_speed_mm_s", "mm/s", kMostSpeed),
     axis_key<0, kAcceleration>("axis.X", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
     axis_key<0, kJerk>("axis.X", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    servo_hz_key("axis.X", "50, assumed", store_loop<0, kHz>),
+    servo_damping_key("axis.X", store_loop<0, kDamping>),
     axis_key<1, kSpeed>("axis.Y", "max_speed_mm_s", "mm/s", kMostSpeed),
     axis_key<1, kAcceleration>("axis.Y", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
     axis_key<1, kJerk>("axis.Y", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    servo_hz_key("axis.Y", "50, assumed", store_loop<1, kHz>),
+    servo_damping_key("axis.Y", store_loop<1, kDamping>),
     axis_key<2, kSpeed>("axis.Z", "max_speed_mm_s", "mm/s", kMostSpeed),
     axis_key<2, kAcceleration>("axis.Z", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
     axis_key<2, kJerk>("axis.Z", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    servo_hz_key("axis.Z", "50, assumed", store_loop<2, kHz>),
+    servo_damping_key("axis.Z", store_loop<2, kDamping>),
     axis_key<3, kSpeed>("axis.A", "max_speed_deg_s", "deg/s", kMostSpeed),
     axis_key<3, kAcceleration>("axis.A", "max_acceleration_deg_s2", "deg/s^2", kMostAcceleration),
     axis_key<3, kJerk>("axis.A", "max_jerk_deg_s3", "deg/s^3", kMostJerk),
+    servo_hz_key("axis.A", "30, assumed", store_loop<3, kHz>),
+    servo_damping_key("axis.A", store_loop<3, kDamping>),
     axis_key<4, kSpeed>("axis.C", "max_speed_deg_s", "deg/s", kMostSpeed),
     axis_key<4, kAcceleration>("axis.C", "max_acceleration_deg_s2", "deg/s^2", kMostAcceleration),
     axis_key<4, kJerk>("axis.C", "max_jerk_deg_s3", "deg/s^3", kMostJerk),
+    servo_hz_key("axis.C", "30, assumed", store_loop<4, kHz>),
+    servo_damping_key("axis.C", store_loop<4, kDamping>),
     axis_key<5, kSpeed>("axis.U", "max_speed_mm_s", "mm/s", kMostSpeed),
     axis_key<5, kAcceleration>("axis.U", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
     axis_key<5, kJerk>("axis.U", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    servo_hz_key("axis.U", "1_000, assumed", store_loop<5, kHz>),
+    servo_damping_key("axis.U", store_loop<5, kDamping>),
     axis_key<6, kSpeed>("axis.V", "max_speed_mm_s", "mm/s", kMostSpeed),
     axis_key<6, kAcceleration>("axis.V", "max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
     axis_key<6, kJerk>("axis.V", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    servo_hz_key("axis.V", "1_000, assumed", store_loop<6, kHz>),
+    servo_damping_key("axis.V", store_loop<6, kDamping>),
 };
 
 }  // namespace

@@ -130,6 +130,9 @@ servo_us = 100
 [axis.C]
 max_speed_deg_s = 180
 max_jerk_deg_s3 = 3600
+servo_hz = 25.5
+[axis.V]
+servo_damping = 0.6
 )",
                                       "job.toml");
   ASSERT_TRUE(job) << job.error().message;
@@ -155,6 +158,9 @@ max_jerk_deg_s3 = 3600
   EXPECT_NEAR(*got.motion.limits[4].speed, 3.141592653589793, 1e-15);  // rad/s
   EXPECT_FALSE(got.motion.limits[4].acceleration);
   EXPECT_NEAR(*got.motion.limits[4].jerk, 62.83185307179586, 1e-13);
+  EXPECT_EQ(got.motion.servos[4].natural_hz, 25.5);
+  EXPECT_FALSE(got.motion.servos[4].damping);
+  EXPECT_EQ(got.motion.servos[6].damping, 0.6);
 }
 
 struct Wrong {
@@ -218,7 +224,7 @@ const Wrong kWrongs[] = {
     {"RuleWithSigma", "rule   = \"time\"", "sigma_um = 5000\nrule   = \"time\"", kNotSo, "rule   = \"time\"",
      "[split] rule = \"time\": has no meaning with sigma_um (line 34); take one of them out"},
     {"OriginOfTwo", "[motion]", "[clamping]\norigin_mm = [1, 2]\n[motion]", kNotSo, "[1, 2]",
-     "[clamping] origin_mm = [1, 2]: must be [x, y, z], three numbers from -1_000_000 to 1_000_000 mm"},
+     "[clamping] origin_mm = [1, 2]: must be [x, y, z], three numbers from -10_000 to 10_000 mm"},
     {"TiltBeyondATurn", "[motion]", "[clamping]\ntilt_deg = [0, 190]\n[motion]", kOutside, "190",
      "[clamping] tilt_deg = [0, 190]: must be [first, second], two numbers from -180 to 180 deg"},
     {"NoClock", "clock_multiplier = 2 ", "", kNotSo, "[fpga]",

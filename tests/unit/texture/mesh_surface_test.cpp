@@ -178,6 +178,13 @@ TEST(MeshSurface, FindsTheSameAsALookAtEveryTriangle) {
   }
 }
 
+TEST(LimitSlope, RefusesHeightsBeyondEveryMachine) {
+  const auto surface = limit_slope(expression_surface("1000*x").value(), 1.5703);
+  EXPECT_EQ(test::on(*surface, {{10, 0}}).size(), 1U);
+  EXPECT_NE(error_at(*surface, {-10.001, 0}).message.find("z = -10001 mm at x = -10.001 mm, y = 0 mm"),
+            std::string::npos);
+}
+
 TEST(LimitSlope, NamesPointAndSlope) {
   const auto surface = limit_slope(expression_surface("x^2").value(), 60 * std::numbers::pi / 180);
   EXPECT_EQ(test::on(*surface, {{0.8, 3}}).size(), 1U);  // 58 degrees

@@ -210,6 +210,22 @@ TEST(ProveLimits, SaysTheSameWhateverTheThreads) {
   }
 }
 
+TEST(TimeSevenAxes, RefusesWhatWouldNeverEndBeforeReckoning) {
+  const Fixture f(3, 3);
+  EXPECT_TRUE(time_seven_axes(f.request, {}));
+  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+    for (double AxisBounds::*bound : {&AxisBounds::speed, &AxisBounds::acceleration, &AxisBounds::jerk}) {
+      PathTimingRequest slow = f.request;
+      slow.limits[axis].*bound = 1e-40;
+      const auto refused = time_seven_axes(slow, {});
+      ASSERT_FALSE(refused) << kPathAxes[axis];
+      EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+      EXPECT_EQ(refused.error().message.rfind("axis " + std::string(kPathAxes[axis]) + ": ", 0), 0U)
+          << refused.error().message;
+    }
+  }
+}
+
 TEST(TimeSevenAxes, RefusesWhatIsNoRequest) {
   Fixture f(2, 3);
   PathTimingRequest wrong = f.request;

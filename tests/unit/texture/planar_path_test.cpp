@@ -72,5 +72,11 @@ TEST(Resample, RefusesStepsThatWouldFillTheMemory) {
   EXPECT_EQ(resample({}, 1, 1000).error().code, ErrorCode::bad_argument);
 }
 
+TEST(Resample, RefusesAPathOfOnePlace) {
+  const std::vector<Vector2> path = {{1, 2}, {1, 2}, {1, 2}};
+  EXPECT_EQ(resample(path, 0.1, 1000).error().message,
+            "a path of 3 points that are all the same, (1, 2) mm: must have two different ones");
+}
+
 }  // namespace
 }  // namespace gravure::texture

@@ -28,6 +28,7 @@ struct TimedSplit {
   std::vector<double> pulse_mm;
   TimedPath timed;
   double fastest_s = 0;  ///< of all sigmas that were looked at
+  double published_mm = 0;  ///< the sigma of the published rule; 0: nobody asked for it
   int tries = 0;         ///< sigmas that were timed
   /// The points of the texture where the machine finds them.
   std::span<const SurfacePoint> targets() const noexcept { return lying.empty() ? split.targets : lying; }

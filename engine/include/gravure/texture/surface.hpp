@@ -32,7 +32,8 @@ class Surface {
 /// Slopes are central differences of fourth order. bad_argument, with the place, for what does not parse.
 Result<std::unique_ptr<Surface>> expression_surface(const std::string& expression);
 
-/// The same surface; project() fails with out_of_range, naming point and slope, where it is steeper.
+/// The same surface; project() fails with out_of_range, naming point and slope, where it is steeper, or where it is
+/// more than 10 m above or below z = 0.
 std::unique_ptr<Surface> limit_slope(std::unique_ptr<Surface> surface, double most_rad);
 
 }  // namespace gravure::texture

@@ -76,10 +76,16 @@ struct GivenBounds {
   std::optional<double> acceleration;
   std::optional<double> jerk;
 };
+/// The position loop of an axis; what is left out is assumed.
+struct GivenServo {
+  std::optional<double> natural_hz;
+  std::optional<double> damping;
+};
 struct MotionSettings {
   std::string stops;  ///< empty: at the points of a Hilbert curve, else at corners
   double servo_us = 50;
   std::array<GivenBounds, kPathAxes.size()> limits;
+  std::array<GivenServo, kPathAxes.size()> servos;
 };
 inline constexpr std::array<std::string_view, 2> kStops = {"points", "corners"};
 
