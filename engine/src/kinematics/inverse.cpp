@@ -61,18 +61,6 @@ Result<Pose> solve(const Problem& problem) {
   return solve_numeric(problem);
 }
 
-/// The turn nearest to `near` that the limits allow; nearest_turn() where none is.
-double allowed_turn(double angle_rad, double near_rad, const JointLimits& limits) {
-  double angle = nearest_turn(angle_rad, near_rad);
-  if (limits.most && angle > *limits.most) {
-    angle -= kTurn * std::ceil((angle - *limits.most) / kTurn);
-  }
-  if (limits.least && angle < *limits.least) {
-    angle += kTurn * std::ceil((*limits.least - angle) / kTurn);
-  }
-  return angle;
-}
-
 void choose_turns(const Problem& problem, Pose& pose) {
   for (const std::size_t i : problem.revolute) {
     const bool is_tilt = pose.solver == Solver::tilt_turn && i == problem.revolute[0];
@@ -113,6 +101,17 @@ std::string_view solver_name(Solver solver) noexcept {
 
 double nearest_turn(double angle_rad, double near_rad) noexcept {
   return angle_rad + kTurn * std::floor((near_rad - angle_rad) / kTurn + 0.5);
+}
+
+double allowed_turn(double angle_rad, double near_rad, const JointLimits& limits) noexcept {
+  double angle = nearest_turn(angle_rad, near_rad);
+  if (limits.most && angle > *limits.most) {
+    angle -= kTurn * std::ceil((angle - *limits.most) / kTurn);
+  }
+  if (limits.least && angle < *limits.least) {
+    angle += kTurn * std::ceil((*limits.least - angle) / kTurn);
+  }
+  return angle;
 }
 
 Result<Pose> inverse(const Machine& machine, const Target& target, const InverseRequest& request) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gravure/texture/planning_memory.hpp"
+
 namespace gravure::texture {
 PathTimingRequest TimedSplit::request(const PathMachine& machine, const TexturePath& path) const {
   PathTimingRequest request;
@@ -14,6 +16,7 @@ PathTimingRequest TimedSplit::request(const PathMachine& machine, const TextureP
   request.limits = machine.limits;
   request.stops = machine.stops;
   request.servo_s = machine.servo_s;
+  request.memory_bytes = machine.memory_bytes;
   request.sigma_points = split.sigma_mm / path.step_mm;
   const Result<RotaryTable> table = rotary_table(machine.machine);
   if (table) {
@@ -47,9 +50,11 @@ Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surfac
   if (!(share >= 0) || !std::isfinite(share)) {
     return Error{ErrorCode::out_of_range, fmt::format("share of the time {}: must be 0 or more", share)};
   }
+  GRAVURE_CHECK(check_planning_memory(path.points_mm.size(), machine.memory_bytes));
   GRAVURE_TRY(Split widest, split_by_published_rule(splitter, surface, path, limits, cancel));
   const int splits = widest.tries;
   GRAVURE_TRY(TimedSplit best, time_split(std::move(widest), path, machine, cancel));
+  best.timed.motion.reset();
   if (splitter.keeps_limits()) {
     return best;
   }
@@ -64,6 +69,7 @@ Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surfac
       return false;
     }
     GRAVURE_TRY(TimedSplit timed, time_split(std::move(split), path, machine, cancel));
+    timed.timed.motion.reset();
     ++tries;
     fastest_s = std::min(fastest_s, timed.timed.time_s);
     if (timed.timed.time_s > fastest_s * (1 + share)) {

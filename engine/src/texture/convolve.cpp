@@ -50,9 +50,7 @@ Complex beyond(std::span<const Vector2> path, std::int64_t place, Ends ends) {
   return shift + (inside <= last ? at(inside) : 2.0 * at(last) - at(period - inside));
 }
 
-}  // namespace
-
-std::vector<Vector2> convolve(std::span<const Vector2> path, const std::vector<double>& weights, Ends ends) {
+std::vector<Vector2> by_fft(std::span<const Vector2> path, const std::vector<double>& weights, Ends ends) {
   const auto count = static_cast<std::int64_t>(path.size());
   const auto radius = static_cast<std::int64_t>(weights.size()) - 1;
   const std::size_t length = fast_length(static_cast<std::size_t>(count + 2 * radius));
@@ -80,6 +78,80 @@ std::vector<Vector2> convolve(std::span<const Vector2> path, const std::vector<d
     means[i] = Vector2(point.real(), point.imag());
   }
   return means;
+}
+
+/// The path less the straight line between its ends, and that line.
+std::vector<Vector2> straight_line(std::span<const Vector2> path) {
+  std::vector<Vector2> line(path.size());
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(line.size() - 1);
+    line[i] = (1 - share) * path.front() + share * path.back();
+  }
+  return line;
+}
+
+/// Less the line between its ends the mirrored path repeats itself every 2 (count - 1) points: weights of the same
+/// place of that period are one.
+std::vector<double> folded_odd(const Weight& weight, std::int64_t radius, std::int64_t count) {
+  const std::int64_t half = count - 1;
+  std::vector<double> folded(static_cast<std::size_t>(count));
+  for (std::int64_t k = radius; k >= 0; --k) {
+    const std::int64_t place = k % (2 * half);
+    const std::int64_t j = std::min(place, 2 * half - place);
+    folded[static_cast<std::size_t>(j)] += (j == 0 && k > 0 ? 2 : 1) * weight(k);
+  }
+  return folded;
+}
+
+std::vector<Vector2> convolve_odd(std::span<const Vector2> path, const Weight& weight, std::int64_t radius) {
+  const std::vector<Vector2> line = straight_line(path);
+  std::vector<Vector2> rest(path.begin(), path.end());
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    rest[i] -= line[i];
+  }
+  std::vector<Vector2> means =
+      by_fft(rest, folded_odd(weight, radius, static_cast<std::int64_t>(path.size())), Ends::odd);
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    means[i] += line[i];
+  }
+  return means;
+}
+
+/// Weights further out than the path is long meet its ends only.
+std::vector<Vector2> convolve_repeat(std::span<const Vector2> path, const Weight& weight, std::int64_t radius) {
+  const auto count = static_cast<std::int64_t>(path.size());
+  double tail = 0;
+  for (std::int64_t k = radius; k >= count; --k) {
+    tail += weight(k);
+  }
+  std::vector<double> weights(path.size());
+  for (std::int64_t k = 0; k < count; ++k) {
+    weights[static_cast<std::size_t>(k)] = weight(k);
+  }
+  std::vector<Vector2> means = by_fft(path, weights, Ends::repeat);
+  const Vector2 ends = tail * (path.front() + path.back());
+  for (Vector2& mean : means) {
+    mean += ends;
+  }
+  return means;
+}
+
+}  // namespace
+
+bool is_folded(std::int64_t radius, std::size_t count) noexcept {
+  constexpr std::int64_t kAlways = 1 << 16;
+  return count > 1 && radius > std::max(kAlways, static_cast<std::int64_t>(count));
+}
+
+std::vector<Vector2> convolve(std::span<const Vector2> path, const Weight& weight, std::int64_t radius, Ends ends) {
+  if (is_folded(radius, path.size())) {
+    return ends == Ends::odd ? convolve_odd(path, weight, radius) : convolve_repeat(path, weight, radius);
+  }
+  std::vector<double> weights(static_cast<std::size_t>(radius) + 1);
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    weights[k] = weight(static_cast<std::int64_t>(k));
+  }
+  return by_fft(path, weights, ends);
 }
 
 std::vector<double> weights_of(const std::function<double(double)>& response, std::size_t radius) {

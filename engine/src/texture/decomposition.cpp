@@ -14,7 +14,7 @@ namespace gravure::texture {
 Result<std::vector<Vector2>> slow_part(std::span<const Vector2> path_mm, double step_mm, const GaussianFilter& filter) {
   const double sigma_steps = filter.sigma_mm / step_mm;
   const double wing = filter.cut * sigma_steps + 0.5;
-  constexpr double kMostWing = 1e8;
+  constexpr double kMostWing = 1e7;
   if (!(step_mm > 0) || !(filter.sigma_mm > 0) || !(filter.cut > 0) || !(wing < kMostWing)) {
     return Error{
         ErrorCode::out_of_range,
@@ -23,17 +23,16 @@ Result<std::vector<Vector2>> slow_part(std::span<const Vector2> path_mm, double 
                     filter.sigma_mm, step_mm, filter.cut, kMostWing)};
   }
   const auto radius = static_cast<std::int64_t>(wing);
-  std::vector<double> weights(static_cast<std::size_t>(radius) + 1);
+  const auto bell = [sigma_steps](std::int64_t k) {
+    const double at = static_cast<double>(k) / sigma_steps;
+    return std::exp(-at * at / 2);
+  };
   double sum = 0;
   for (std::int64_t k = radius; k >= 0; --k) {
-    const double at = static_cast<double>(k) / sigma_steps;
-    weights[static_cast<std::size_t>(k)] = std::exp(-at * at / 2);
-    sum += (k == 0 ? 1 : 2) * weights[static_cast<std::size_t>(k)];
+    sum += (k == 0 ? 1 : 2) * bell(k);
   }
-  for (double& weight : weights) {
-    weight /= sum;
-  }
-  return convolve(path_mm, weights, filter.ends);
+  return convolve(
+      path_mm, [&](std::int64_t k) { return bell(k) / sum; }, radius, filter.ends);
 }
 
 Deviation deviation(const SurfacePoint& target, const SurfacePoint& stage) {

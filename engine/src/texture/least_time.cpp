@@ -74,12 +74,11 @@ Result<void> check_least_time(const PathTimingRequest& request) {
   return {};
 }
 
-Error too_long(std::int64_t periods, double servo_s) {
+Error too_long(double periods, double servo_s) {
   return {ErrorCode::out_of_range,
           fmt::format("the motion takes {:.3g} s or more, that is {:.3g} servo periods of {:.6g} us; at most {} can be "
                       "planned: {}",
-                      static_cast<double>(periods) * servo_s, static_cast<double>(periods), servo_s * 1e6, kMostPeriods,
-                      kAdvice)};
+                      periods * servo_s, periods, servo_s * 1e6, kMostPeriods, kAdvice)};
 }
 
 }  // namespace gravure::texture

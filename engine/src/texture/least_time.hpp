@@ -13,6 +13,6 @@ inline constexpr std::int64_t kMostPeriods = std::int64_t{1} << 31;
 Result<void> check_least_time(const PathTimingRequest& request);
 
 /// The same of a motion that has turned out to be too long.
-Error too_long(std::int64_t periods, double servo_s);
+Error too_long(double periods, double servo_s);
 
 }  // namespace gravure::texture

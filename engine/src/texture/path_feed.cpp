@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "motion_size.hpp"
+
 namespace gravure::texture {
 namespace {
 
@@ -17,6 +19,7 @@ class Allowed {
   Allowed(const SevenLimits& limits, const StageState& at, double speed2, double acceleration, double slack)
       : most_(speed2 / (slack * slack)) {
     lines_[0] = {0, acceleration / (slack * slack)};
+    double by_third = std::numeric_limits<double>::infinity();  // jerk, by what speed^3 makes of it
     for (std::size_t axis = 0; axis < kStageAxes; ++axis) {
       constexpr double kUnmoved = 1e-15;
       const double slope = std::max(std::abs(at.first[axis]), kUnmoved);
@@ -26,10 +29,11 @@ class Allowed {
       most_ = std::min(most_, fastest * fastest);
       const double third = std::abs(at.third[axis]);
       if (third > kUnmoved) {
-        const double by_jerk = std::cbrt(limits[axis].jerk / third) / slack;
-        most_ = std::min(most_, by_jerk * by_jerk);
+        by_third = std::min(by_third, limits[axis].jerk / third);
       }
     }
+    const double by_jerk = std::cbrt(by_third) / slack;
+    most_ = std::min(most_, by_jerk * by_jerk);
     most_ = std::max(most_, kLeastSpeed2);
   }
   /// The largest square of the speed from which `next` can be reached.
@@ -193,9 +197,19 @@ void PathFeed::sample(PathRuns& path, PathRun& run) const {
   }
 }
 
-void PathFeed::plan(const SevenLimits& limits, const StageSpline& stages, PathRuns& path) {
+double PathFeed::time_s(const PathRuns& path) const noexcept {
+  double sum = 0;
+  for (const PathRun& run : path.runs()) {
+    for (std::size_t k = run.first; run.is_long() && k < run.first + run.count; ++k) {
+      sum += segment_s(k);
+    }
+  }
+  return sum;
+}
+
+Result<void> PathFeed::plan(const SevenLimits& limits, const StageSpline& stages, PathRuns& path) {
   if (!any()) {
-    return;
+    return {};
   }
   if (path.knot() == 0) {
     cap_runs(path, false);
@@ -204,11 +218,13 @@ void PathFeed::plan(const SevenLimits& limits, const StageSpline& stages, PathRu
   }
   cap_runs(path, true);
   sweep(limits, stages);
+  GRAVURE_CHECK(check_places(time_s(path), path.period_s(), static_cast<double>(path.knot())));
   for (PathRun& run : path.runs()) {
     if (run.is_long()) {
       sample(path, run);
     }
   }
+  return {};
 }
 
 }  // namespace gravure::texture

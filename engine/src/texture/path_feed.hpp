@@ -23,7 +23,8 @@ class PathFeed {
   /// has been said before.
   void slow(std::size_t segment, double factor) noexcept { slack_[segment] *= factor; }
   /// Finds the speeds and gives every long run its feed; the first time it chooses the knots as well.
-  void plan(const SevenLimits& limits, const StageSpline& stages, PathRuns& path);
+  /// out_of_range where feeds would be too long to be held.
+  Result<void> plan(const SevenLimits& limits, const StageSpline& stages, PathRuns& path);
   /// How long a segment of a long run takes, s.
   double segment_s(std::size_t segment) const noexcept;
 
@@ -35,6 +36,7 @@ class PathFeed {
   void cap_runs(const PathRuns& path, bool ends);
   void sweep(const SevenLimits& limits, const StageSpline& stages);
   void choose_knot(const SevenLimits& limits, PathRuns& path) const;
+  double time_s(const PathRuns& path) const noexcept;
   void sample(PathRuns& path, PathRun& run) const;
 
   std::vector<double> slack_;   ///< of segments

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gravure/motion/plan_profile.hpp"
+#include "gravure/texture/stop_times.hpp"
 #include "run_motion.hpp"
 #include "smooth_place.hpp"
 
@@ -18,13 +19,14 @@ double slope(const SurfacePoint& point, const Vector2& along) {
 }  // namespace
 
 PathRuns::PathRuns(std::vector<SurfacePoint> targets, std::span<const std::size_t> stops, double period_s)
-    : targets_(std::move(targets)), period_s_(period_s) {
+    : targets_(std::make_shared<const std::vector<SurfacePoint>>(std::move(targets))), period_s_(period_s) {
+  const std::vector<SurfacePoint>& at = *targets_;
   runs_.reserve(stops.size());
   for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
     PathRun run;
     run.first = stops[k];
     run.count = stops[k + 1] - stops[k];
-    run.length_mm = (targets_[stops[k + 1]].position_mm - targets_[stops[k]].position_mm).head<2>().norm();
+    run.length_mm = (at[stops[k + 1]].position_mm - at[stops[k]].position_mm).head<2>().norm();
     runs_.push_back(run);
   }
 }
@@ -44,10 +46,10 @@ motion::Profile shortest(const PathRun& run) {
 
 void PathRuns::cap(PathRun& run, const AxisBounds& caps) {
   run.caps = caps;
-  const motion::Profile profile = shortest(run);
-  run.shortest_s = profile.access_time_s();
-  run.shortest_speed = profile.peak_velocity_mm_s;
-  run.shortest_acceleration = profile.peak_acceleration_up_mm_s2;
+  const RestToRest move = rest_to_rest(run.length_mm, caps);
+  run.shortest_s = move.time_s;
+  run.shortest_speed = move.speed;
+  run.shortest_acceleration = move.acceleration;
 }
 
 std::int64_t PathRuns::profile_periods(const PathRun& run) const noexcept {
@@ -94,6 +96,15 @@ void PathRuns::set_knot(std::int64_t periods) {
   for (std::int64_t phase = 0; phase < periods; ++phase) {
     knot_weights_.push_back(spline_weights<3>(static_cast<double>(phase) / static_cast<double>(periods)));
   }
+}
+
+double PathRuns::least_time_s() const noexcept {
+  double sum = 0;
+  for (const PathRun& run : runs_) {
+    const auto knots = static_cast<double>(run.feed_mm.size()) * static_cast<double>(knot_);
+    sum += run.fed() ? knots * period_s_ : run.shortest_s * run.stretch;
+  }
+  return sum;
 }
 
 void PathRuns::schedule() {

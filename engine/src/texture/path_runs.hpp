@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -74,7 +75,7 @@ class PathRuns {
 
   std::vector<PathRun>& runs() noexcept { return runs_; }
   const std::vector<PathRun>& runs() const noexcept { return runs_; }
-  const std::vector<SurfacePoint>& targets() const noexcept { return targets_; }
+  const std::vector<SurfacePoint>& targets() const noexcept { return *targets_; }
   double period_s() const noexcept { return period_s_; }
   /// Periods of all runs; known after schedule().
   std::int64_t periods() const noexcept { return runs_.empty() ? 0 : runs_.back().start + runs_.back().periods; }
@@ -93,18 +94,20 @@ class PathRuns {
   motion::Profile profile(const PathRun& run) const;
   double peak_speed(const PathRun& run) const noexcept;         ///< mm/s
   double peak_acceleration(const PathRun& run) const noexcept;  ///< mm/s^2
+  /// All runs together at least, feeds where they have been set; for a look before schedule().
+  double least_time_s() const noexcept;
   /// Sets periods and start of every run.
   void schedule();
   /// The run that period `period` falls into; at the end of one the next.
   std::size_t run_at(std::int64_t period) const noexcept;
   /// Where the spot is after `run_mm` of a run.
   static Place place(const PathRun& run, double run_mm) noexcept;
-  SpotSegment segment(std::size_t index) const { return {targets_[index], targets_[index + 1]}; }
+  SpotSegment segment(std::size_t index) const { return {(*targets_)[index], (*targets_)[index + 1]}; }
   SpotState spot(const PathRun& run, double run_mm) const noexcept;
 
  private:
   std::int64_t profile_periods(const PathRun& run) const noexcept;
-  std::vector<SurfacePoint> targets_;
+  std::shared_ptr<const std::vector<SurfacePoint>> targets_;  ///< copies of a path share them
   std::vector<PathRun> runs_;
   double period_s_ = 0;
   std::int64_t knot_ = 0;

@@ -3,17 +3,19 @@
 namespace gravure::texture {
 
 StageSpline::StageSpline(std::span<const SevenAxes> axes, std::span<const std::size_t> breaks) {
-  knots_.reserve(axes.size());
+  std::vector<Knot> knots;
+  knots.reserve(axes.size());
   for (const SevenAxes& at : axes) {
-    knots_.push_back({stages_of(at), {}});
+    knots.push_back({stages_of(at), {}});
   }
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-    solve(breaks[k], breaks[k + 1]);
+    solve(knots, breaks[k], breaks[k + 1]);
   }
+  knots_ = std::make_shared<const std::vector<Knot>>(std::move(knots));
 }
 
 /// bend[i - 1] + 4 bend[i] + bend[i + 1] = 6 times the second difference, 0 at both ends: one sweep down, one up.
-void StageSpline::solve(std::size_t first, std::size_t last) {
+void StageSpline::solve(std::vector<Knot>& knots, std::size_t first, std::size_t last) {
   if (last - first < 2) {
     return;
   }
@@ -22,14 +24,14 @@ void StageSpline::solve(std::size_t first, std::size_t last) {
     const double pivot = 4 - (i > first + 1 ? upper[i - 1 - first] : 0);
     upper[i - first] = 1 / pivot;
     for (std::size_t axis = 0; axis < kStageAxes; ++axis) {
-      const double rest = 6 * (knots_[i + 1].value[axis] - 2 * knots_[i].value[axis] + knots_[i - 1].value[axis]) -
-                          knots_[i - 1].bend[axis];
-      knots_[i].bend[axis] = rest / pivot;
+      const double rest = 6 * (knots[i + 1].value[axis] - 2 * knots[i].value[axis] + knots[i - 1].value[axis]) -
+                          knots[i - 1].bend[axis];
+      knots[i].bend[axis] = rest / pivot;
     }
   }
   for (std::size_t i = last - 1; i > first; --i) {
     for (std::size_t axis = 0; axis < kStageAxes; ++axis) {
-      knots_[i].bend[axis] -= i + 1 < last ? upper[i - first] * knots_[i + 1].bend[axis] : 0;
+      knots[i].bend[axis] -= i + 1 < last ? upper[i - first] * knots[i + 1].bend[axis] : 0;
     }
   }
 }
@@ -40,8 +42,8 @@ StageValues StageSpline::at(const Place& place) const noexcept {
   const double w = 1 - u;
   const double low = w * (w * w - 1) / 6;
   const double high = u * (u * u - 1) / 6;
-  const Knot& a = knots_[i];
-  const Knot& b = knots_[i + 1];
+  const Knot& a = (*knots_)[i];
+  const Knot& b = (*knots_)[i + 1];
   StageValues value;
   for (std::size_t axis = 0; axis < kStageAxes; ++axis) {
     value[axis] = a.value[axis] + u * (b.value[axis] - a.value[axis]) + (low * a.bend[axis] + high * b.bend[axis]);
@@ -53,8 +55,8 @@ StageState StageSpline::state(const Place& place) const noexcept {
   const std::size_t i = place.index;
   const double u = place.share;
   const double w = 1 - u;
-  const Knot& a = knots_[i];
-  const Knot& b = knots_[i + 1];
+  const Knot& a = (*knots_)[i];
+  const Knot& b = (*knots_)[i + 1];
   StageState state;
   state.value = at(place);
   for (std::size_t axis = 0; axis < kStageAxes; ++axis) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,8 +34,8 @@ class StageSpline {
     StageValues value;
     StageValues bend;  ///< second derivative
   };
-  void solve(std::size_t first, std::size_t last);
-  std::vector<Knot> knots_;
+  static void solve(std::vector<Knot>& knots, std::size_t first, std::size_t last);
+  std::shared_ptr<const std::vector<Knot>> knots_;  ///< copies of a spline share them
 };
 
 }  // namespace gravure::texture

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "gravure/texture/planning_memory.hpp"
 #include "least_time.hpp"
+#include "motion_size.hpp"
 #include "path_instants.hpp"
 #include "seven_axis_planner.hpp"
 #include "slow_stages.hpp"
@@ -21,10 +23,14 @@ Result<void> check_request(const PathTimingRequest& request) {
                     "at each",
                     request.targets.size(), request.axes.size(), request.pulse_mm.size())};
   }
-  if (!(request.servo_s > 0 && request.servo_s <= 1)) {
-    return Error{ErrorCode::out_of_range,
-                 fmt::format("servo period {} s: must be above 0, at most 1", request.servo_s)};
+  constexpr double kLeastServo_s = 0.999e-6;
+  if (!(request.servo_s >= kLeastServo_s && request.servo_s <= 1)) {
+    return Error{ErrorCode::out_of_range, fmt::format("servo period {} s: must be from 1e-6 to 1", request.servo_s)};
   }
+  if (!(request.smoothing_s >= 0 && request.smoothing_s <= 1)) {
+    return Error{ErrorCode::out_of_range, fmt::format("smoothing_s = {}: must be 0 to 1", request.smoothing_s)};
+  }
+  GRAVURE_CHECK(check_planning_memory(request.targets.size(), request.memory_bytes));
   GRAVURE_CHECK(check_limits(request.limits));
   return check_least_time(request);
 }
@@ -60,7 +66,7 @@ Result<ProvenPath> prove_seven_axes(const PathTimingRequest& request, const Canc
     if (!breached || proven.proofs == kMostProofs) {
       return proven;
     }
-    planner.lower(needs);
+    GRAVURE_CHECK(planner.lower(needs));
   }
 }
 
@@ -80,6 +86,7 @@ Result<TimedPath> time_five_axes(const PathTimingRequest& request, const CancelT
                                kPathAxes[*axis], run.first)};
     }
   }
+  GRAVURE_CHECK(check_duration(path.least_time_s(), request.servo_s));
   path.schedule();
   TimedPath timed;
   timed.runs = path.runs().size();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion_size.hpp"
 #include "slow_stages.hpp"
 
 namespace gravure::texture {
@@ -48,21 +49,35 @@ SevenAxisPlanner::SevenAxisPlanner(const PathTimingRequest& request)
             request.servo_s) {
   const std::size_t ends[] = {0, request.targets.size() - 1};
   stages_ = StageSpline(request.axes, ends);
-  cap_by_galvo(request, stages_, nullptr, path_);
   feed_ = PathFeed(path_);
-  feed_.plan(request.limits, stages_, path_);
-  path_.schedule();
-  cell_ = std::max<std::int64_t>(2, std::llround(smoothing_s(request, path_, feed_.any()) / kSpread / request.servo_s));
-  place_ = SmoothPlace(mean_places(path_, cell_), cell_, request_.targets.size());
 }
 
-void SevenAxisPlanner::retime() {
-  feed_.plan(request_.limits, stages_, path_);
+Result<void> SevenAxisPlanner::start() {
+  cap_by_galvo(request_, stages_, nullptr, path_);
+  GRAVURE_CHECK(check_duration(path_.least_time_s(), request_.servo_s));
+  GRAVURE_CHECK(feed_.plan(request_.limits, stages_, path_));
+  GRAVURE_CHECK(check_duration(path_.least_time_s(), request_.servo_s));
+  path_.schedule();
+  const double cell = smoothing_s(request_, path_, feed_.any()) / kSpread / request_.servo_s;
+  GRAVURE_CHECK(check_places(path_.least_time_s(), request_.servo_s, std::max(cell, 2.0)));
+  cell_ = std::max<std::int64_t>(2, std::llround(cell));
+  place_ = SmoothPlace(mean_places(path_, cell_), cell_, request_.targets.size());
+  return {};
+}
+
+Result<void> SevenAxisPlanner::retime() {
+  GRAVURE_CHECK(feed_.plan(request_.limits, stages_, path_));
+  GRAVURE_CHECK(check_duration(path_.least_time_s(), request_.servo_s));
+  GRAVURE_CHECK(check_places(path_.least_time_s(), request_.servo_s, static_cast<double>(cell_)));
   path_.schedule();
   place_ = SmoothPlace(mean_places(path_, cell_), cell_, request_.targets.size());
+  return {};
 }
 
 Result<void> SevenAxisPlanner::settle(const CancelToken& cancel) {
+  if (passes_ == 0) {
+    GRAVURE_CHECK(start());
+  }
   // What the stages take of the galvo is looked at once more when they have been slowed: it only gets less.
   for (int pass = 0;; ++pass) {
     if (cancel.cancelled()) {
@@ -77,13 +92,13 @@ Result<void> SevenAxisPlanner::settle(const CancelToken& cancel) {
                       kPathAxes[slow.axis], slow.point)};
     }
     if (slow.needed) {
-      retime();
+      GRAVURE_CHECK(retime());
     } else if (pass > 0) {
       return {};
     }
     if (pass == 0) {
       cap_by_galvo(request_, stages_, &place_, path_);
-      retime();
+      GRAVURE_CHECK(retime());
     }
   }
 }
@@ -96,9 +111,9 @@ void SevenAxisPlanner::note(const LimitUse& breach, Needs& needs) const {
   needs.add(period - reach, period + reach, kMore * std::pow(breach.share(), 1 / power));
 }
 
-void SevenAxisPlanner::lower(const Needs& needs) {
+Result<void> SevenAxisPlanner::lower(const Needs& needs) {
   needs.slow(feed_, path_);
-  retime();
+  return retime();
 }
 
 TimedPath SevenAxisPlanner::timed() const {

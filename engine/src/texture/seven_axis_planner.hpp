@@ -22,12 +22,14 @@ class SevenAxisPlanner {
   /// Takes one down.
   void note(const LimitUse& breach, Needs& needs) const;
   /// Slows what they ask for.
-  void lower(const Needs& needs);
+  Result<void> lower(const Needs& needs);
   TimedPath timed() const;
 
  private:
+  /// The first times, by the galvo alone.
+  Result<void> start();
   /// Feeds, times and the stages' place, after something has been slowed.
-  void retime();
+  Result<void> retime();
   const PathTimingRequest& request_;
   PathRuns path_;
   PathFeed feed_;

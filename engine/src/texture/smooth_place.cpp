@@ -63,18 +63,21 @@ PlaceState SmoothPlace::state(double period, double period_s) const noexcept {
   const double by = 1 / (static_cast<double>(cell_) * period_s);
   PlaceState state;
   const double base = split_off(c);
-  state.place = place_of(base, dot(c, spline_weights<5>(share)), points_);
+  const auto second = spline_weights<2>(share);
+  const auto third = raised<3>(second, share);
+  const auto fourth = raised<4>(third, share);
+  state.place = place_of(base, dot(c, raised<5>(fourth, share)), points_);
   const auto differences = [&c, by](std::size_t left) {
     for (std::size_t i = 0; i < left; ++i) {
       c[i] = (c[i + 1] - c[i]) * by;
     }
   };
   differences(5);
-  state.speed = dot(c, spline_weights<4>(share));
+  state.speed = dot(c, fourth);
   differences(4);
-  state.acceleration = dot(c, spline_weights<3>(share));
+  state.acceleration = dot(c, third);
   differences(3);
-  state.jerk = dot(c, spline_weights<2>(share));
+  state.jerk = dot(c, second);
   return state;
 }
 

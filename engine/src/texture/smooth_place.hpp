@@ -8,22 +8,28 @@
 
 namespace gravure::texture {
 
+/// From the weights of a uniform B-spline of one degree less, `share` 0 to 1 into the cell.
+template <std::size_t Degree>
+std::array<double, Degree + 1> raised(const std::array<double, Degree>& below, double share) noexcept {
+  std::array<double, Degree + 1> weights{};
+  constexpr auto kBy = static_cast<double>(Degree);
+  for (std::size_t i = 0; i <= Degree; ++i) {
+    const double before = i > 0 ? below[i - 1] : 0;
+    const double here = i < Degree ? below[i] : 0;
+    const auto k = static_cast<double>(i);
+    weights[i] = ((kBy - k + share) * before + (k + 1 - share) * here) / kBy;
+  }
+  return weights;
+}
+
 /// The weights of the degree + 1 control points of a uniform B-spline, `share` 0 to 1 into the cell.
 template <std::size_t Degree>
 std::array<double, Degree + 1> spline_weights(double share) noexcept {
-  std::array<double, Degree + 1> weights{};
-  weights[0] = 1;
-  for (std::size_t degree = 1; degree <= Degree; ++degree) {
-    const auto by = static_cast<double>(degree);
-    double before = 0;
-    for (std::size_t i = 0; i <= degree; ++i) {
-      const double here = i < degree ? weights[i] : 0;
-      const auto k = static_cast<double>(i);
-      weights[i] = ((by - k + share) * before + (k + 1 - share) * here) / by;
-      before = here;
-    }
+  if constexpr (Degree == 0) {
+    return {1.0};
+  } else {
+    return raised<Degree>(spline_weights<Degree - 1>(share), share);
   }
-  return weights;
 }
 
 /// A place along the path and its derivatives by time.

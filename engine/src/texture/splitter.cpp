@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "convolve.hpp"
 #include "splitters.hpp"
@@ -46,12 +47,11 @@ class SavitzkyGolaySplitter final : public Splitter {
     // The response of a window -1 to 1, 3/2 (5 sin w / w^3 - 5 cos w / w^2 - sin w / w), is 1/2 at this w.
     constexpr double kWindowHalfWave = 4.00438518148207;
     const double m = std::max(1.0, std::round(kWindowHalfWave / kHalfWave * steps));
-    std::vector<double> weights(static_cast<std::size_t>(m) + 1);
-    for (std::size_t k = 0; k < weights.size(); ++k) {
+    const auto parabola = [m](std::int64_t k) {
       const auto at = static_cast<double>(k);
-      weights[k] = 3 * (3 * m * m + 3 * m - 1 - 5 * at * at) / ((2 * m - 1) * (2 * m + 1) * (2 * m + 3));
-    }
-    return convolve(request.path.points_mm, weights, Ends::odd);
+      return 3 * (3 * m * m + 3 * m - 1 - 5 * at * at) / ((2 * m - 1) * (2 * m + 1) * (2 * m + 3));
+    };
+    return convolve(request.path.points_mm, parabola, static_cast<std::int64_t>(m), Ends::odd);
   }
   bool keeps_limits() const noexcept override { return false; }
 };
@@ -63,12 +63,30 @@ class FftSplitter final : public Splitter {
     const double half = kHalfWave / steps;
     // Its weights fall by e in steps / (half wave * sin(pi / 8)): 1e-16 is left there.
     constexpr double kFaded = 85;
-    const auto radius = static_cast<std::size_t>(std::ceil(kFaded * steps));
-    const std::vector<double> weights =
-        weights_of([half](double wave) { return 1 / (1 + std::pow(wave / half, 8)); }, radius);
-    return convolve(request.path.points_mm, weights, Ends::odd);
+    const auto radius = static_cast<std::int64_t>(std::ceil(kFaded * steps));
+    if (is_folded(radius, request.path.points_mm.size())) {
+      return convolve(
+          request.path.points_mm, [half](std::int64_t k) { return weight_at(half, k); }, radius, Ends::odd);
+    }
+    const std::vector<double> weights = weights_of([half](double wave) { return 1 / (1 + std::pow(wave / half, 8)); },
+                                                   static_cast<std::size_t>(radius));
+    return convolve(
+        request.path.points_mm, [&weights](std::int64_t k) { return weights[static_cast<std::size_t>(k)]; }, radius,
+        Ends::odd);
   }
   bool keeps_limits() const noexcept override { return false; }
+
+ private:
+  /// The transform of 1 / (1 + (w / half)^8), from its four poles above the axis; where `half` is small it is that of
+  /// the steps as well.
+  static double weight_at(double half, std::int64_t k) {
+    const double at = half * static_cast<double>(k);
+    double sum = 0;
+    for (const double pole : {std::numbers::pi / 8, 3 * std::numbers::pi / 8}) {
+      sum += std::exp(-at * std::sin(pole)) * std::sin(pole + at * std::cos(pole));
+    }
+    return half / 4 * sum;
+  }
 };
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gravure/motion/plan_profile.hpp"
 #include "path_axes.hpp"
 
 namespace gravure::texture {
@@ -31,13 +30,29 @@ std::vector<std::size_t> resting_points(std::span<const SurfacePoint> targets, S
   return found;
 }
 
+RestToRest rest_to_rest(double distance, const AxisBounds& limits) {
+  const double d = std::abs(distance);
+  const double v = limits.speed;
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (!(d > 0)) {
+    return {};
+  }
+  const double ramp_s = std::cbrt(d / (2 * j));  // half of a ramp that jerk alone bounds
+  const bool jerk_ends_speed = v * j < a * a;    // speed is reached before acceleration
+  if (jerk_ends_speed ? j * ramp_s * ramp_s <= v : j * ramp_s <= a) {
+    return {4 * ramp_s, j * ramp_s * ramp_s, j * ramp_s};
+  }
+  if (jerk_ends_speed) {
+    return {d / v + 2 * std::sqrt(v / j), v, std::sqrt(v * j)};
+  }
+  const double rest = a / j;
+  const double reached = a / 2 * (std::sqrt(rest * rest + 4 * d / a) - rest);
+  return reached <= v ? RestToRest{2 * (reached / a + rest), reached, a} : RestToRest{d / v + v / a + rest, v, a};
+}
+
 double rest_to_rest_s(double distance, const AxisBounds& limits) {
-  motion::JerkRequest request;
-  request.move = {std::abs(distance), limits.speed, limits.acceleration, limits.acceleration};
-  request.jerk_up_mm_s3 = limits.jerk;
-  request.jerk_down_mm_s3 = limits.jerk;
-  const Result<motion::Profile> profile = motion::plan_profile(request);
-  return profile ? profile.value().access_time_s() : 0;
+  return rest_to_rest(distance, limits).time_s;
 }
 
 namespace {

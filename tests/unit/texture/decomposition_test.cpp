@@ -39,7 +39,8 @@ std::vector<Vector2> slow_part_by_sums(const std::vector<Vector2>& path, double 
     Vector2 sum = Vector2::Zero();
     double weights = 0;
     for (int k = -radius; k <= radius; ++k) {
-      const double weight = std::exp(-k * k / (2 * sigma * sigma));
+      const double steps = k;
+      const double weight = std::exp(-steps * steps / (2 * sigma * sigma));
       sum += weight * at(i + k);
       weights += weight;
     }
@@ -65,6 +66,17 @@ TEST(SlowPart, IsTheSumOfItsWeights) {
       ASSERT_LT((slow[i] - sums[i]).norm(), 1e-8)
           << "point " << i << " of " << path.size() << ", sigma " << filter.sigma_mm << ", cut " << filter.cut;
     }
+  }
+}
+
+/// Weights beyond the ends, which stand for ever, folded into two.
+TEST(SlowPart, RepeatsTheEndsHoweverFarTheWeightsReach) {
+  const std::vector<Vector2> path = {{1, 2}, {4, -3}, {2, 2}, {7, 0}, {-1, 5}};
+  const GaussianFilter filter{.sigma_mm = 9000, .cut = 8, .ends = Ends::repeat};
+  const std::vector<Vector2> slow = slow_part(path, 1, filter).value();
+  const std::vector<Vector2> sums = slow_part_by_sums(path, 1, filter);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    EXPECT_LT((slow[i] - sums[i]).norm(), 1e-9) << i;
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "gravure/core/path_expand.hpp"
 #include "gravure/kinematics/machines.hpp"
+#include "gravure/texture/planning_memory.hpp"
 #include "gravure/texture/split.hpp"
 #include "published_surface.hpp"
 
@@ -224,6 +225,40 @@ TEST(TimeSevenAxes, RefusesWhatWouldNeverEndBeforeReckoning) {
           << refused.error().message;
     }
   }
+}
+
+/// Before anything as long as the motion is asked for: a limit of 1e-9 would take an hour a point.
+TEST(TimeSevenAxes, RefusesMotionThatNothingHolds) {
+  for (const Stops stops : {Stops::points, Stops::corners}) {
+    Fixture f(3, 3, stops);
+    for (const std::size_t axis : {0U, 4U, 6U}) {
+      for (const AxisBounds& bounds : {AxisBounds{1e-9, 1, 1}, AxisBounds{1, 1e-18, 1}, AxisBounds{1, 1, 1e-30}}) {
+        PathTimingRequest slow = f.request;
+        slow.limits[axis] = bounds;
+        const auto timed = time_seven_axes(slow, {});
+        EXPECT_TRUE(!timed || timed.value().time_s < 1e7) << axis;
+        slow.limits[axis].jerk = 1e-30;
+        const auto refused = time_seven_axes(slow, {});
+        ASSERT_FALSE(refused) << axis;
+        EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+        slow.axes = f.five;
+        EXPECT_TRUE(axis > 4 || !time_five_axes(slow, {})) << axis;
+      }
+    }
+  }
+}
+
+TEST(TimeSevenAxes, KeepsToTheMemoryItIsGiven) {
+  Fixture f(2, 3);
+  EXPECT_GE(planning_bytes(1'000'000), 1'000'000'000);
+  f.request.memory_bytes = planning_bytes(f.request.targets.size());
+  EXPECT_TRUE(time_seven_axes(f.request, {}));
+  --f.request.memory_bytes;
+  const auto refused = time_seven_axes(f.request, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+  EXPECT_NE(refused.error().message.find("a path of 16 points needs"), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("does for 15 points"), std::string::npos) << refused.error().message;
 }
 
 TEST(TimeSevenAxes, RefusesWhatIsNoRequest) {

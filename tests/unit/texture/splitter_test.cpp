@@ -94,6 +94,62 @@ TEST(Splitter, OfFftPassesSlowWavesOnly) {
   }
 }
 
+/// What reaches far beyond a path is folded back: the same as from the mirrored path written out that far.
+TEST(Splitter, FoldsWeightsThatReachFarBeyondThePath) {
+  SCOPED_TRACE(Dice::note());
+  Dice dice;
+  struct Case {
+    SplitMethod method;
+    double sigma_steps;
+    std::int64_t points;
+  };
+  for (const Case& each : {Case{SplitMethod::gaussian, 8500, 12'000}, Case{SplitMethod::savitzky_golay, 20'000, 12'000},
+                           Case{SplitMethod::fft, 800, 2000}}) {
+    const std::int64_t last = each.points - 1;
+    std::vector<Vector2> path(static_cast<std::size_t>(each.points), Vector2(5, -3));
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      path[i] =
+          path[i - 1] + Vector2(static_cast<double>(dice.between(-10, 30)), static_cast<double>(dice.between(-20, 20)));
+    }
+    const std::int64_t reach = (72'000 / (2 * last) + 1) * 2 * last;  // whole turns to both sides
+    std::vector<Vector2> mirrored;
+    for (std::int64_t i = -reach; i <= last + reach; ++i) {
+      const std::int64_t place = ((i % (2 * last)) + 2 * last) % (2 * last);
+      const Vector2 shift = static_cast<double>((i - place) / last) * (path.back() - path.front());
+      mirrored.push_back(place <= last
+                             ? Vector2(path[static_cast<std::size_t>(place)] + shift)
+                             : Vector2(2 * path.back() - path[static_cast<std::size_t>(2 * last - place)] + shift));
+    }
+    const std::vector<Vector2> folded = stages(each.method, path, 1, each.sigma_steps);
+    const std::vector<Vector2> whole = stages(each.method, mirrored, 1, each.sigma_steps);
+    double most = 0;
+    double apart = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      most = std::max(most, (folded[i] - path[i]).norm());
+      apart = std::max(apart, (folded[i] - whole[i + static_cast<std::size_t>(reach)]).norm());
+    }
+    EXPECT_LT(apart, 1e-9 * (path.back() - path.front()).norm()) << split_method_name(each.method);
+    EXPECT_GT(most, 1) << split_method_name(each.method);
+  }
+}
+
+TEST(Splitter, RefusesOrBearsEverySigma) {
+  const auto plane = expression_surface("0").value();
+  const TexturePath path = hilbert(3);
+  const std::vector<SurfacePoint> targets = test::on(*plane, path.points_mm);
+  for (const SplitMethod method : {SplitMethod::gaussian, SplitMethod::savitzky_golay, SplitMethod::fft}) {
+    for (const double sigma_mm : {1e-9, 1e3, 1e6, 1e15}) {
+      const auto slow = splitter(method)->stages_mm({*plane, path, targets, sigma_mm, kNoLimits}, CancelToken());
+      if (!slow) {
+        EXPECT_EQ(slow.error().code, ErrorCode::out_of_range) << sigma_mm;
+        EXPECT_GT(sigma_mm, 1e3);
+      } else if (sigma_mm < 1) {
+        EXPECT_LT((slow.value()[9] - path.points_mm[9]).norm(), 1e-9) << split_method_name(method);
+      }
+    }
+  }
+}
+
 TEST(Splitter, OfAdaptiveKindIsTheGaussianWhereNothingBindsIt) {
   const TexturePath path = hilbert(4);
   const std::vector<Vector2> wide = stages(SplitMethod::gaussian, path.points_mm, path.step_mm, 6);

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "dice.hpp"
 #include "gravure/kinematics/machines.hpp"
+#include "gravure/motion/plan_profile.hpp"
 #include "gravure/texture/split.hpp"
 #include "published_surface.hpp"
 
@@ -22,6 +24,32 @@ TEST(RestToRest, TakesThePublishedTimesForOneStep) {
 }
 
 /// [A] table 1 as printed and without jerk limit, planar: 65,535 exact stops.
+/// The closed form beside the planner of any ramps, in all of its five shapes and at their borders.
+TEST(RestToRest, IsTheMoveOfTheProfile) {
+  SCOPED_TRACE(gravure::test::Dice::note());
+  gravure::test::Dice dice;
+  const auto size = [&dice] { return std::pow(10.0, static_cast<double>(dice.between(-3000, 3000)) / 1000); };
+  for (int trial = 0; trial < 4000; ++trial) {
+    AxisBounds limits{size(), size(), size()};
+    double distance = size();
+    if (trial % 5 == 0) {
+      limits.speed = limits.acceleration * limits.acceleration / limits.jerk;  // both are reached at once
+    } else if (trial % 5 == 1) {
+      distance = 2 * std::pow(limits.acceleration, 3) / (limits.jerk * limits.jerk);  // acceleration just is
+    }
+    motion::JerkRequest request;
+    request.move = {distance, limits.speed, limits.acceleration, limits.acceleration};
+    request.jerk_up_mm_s3 = request.jerk_down_mm_s3 = limits.jerk;
+    const auto profile = motion::plan_profile(request);
+    ASSERT_TRUE(profile) << profile.error().message;
+    const RestToRest move = rest_to_rest(trial % 2 == 0 ? distance : -distance, limits);
+    ASSERT_NEAR(move.time_s / profile.value().access_time_s(), 1, 1e-12) << trial;
+    ASSERT_NEAR(move.speed / profile.value().peak_velocity_mm_s, 1, 1e-7) << trial;
+    ASSERT_NEAR(move.acceleration / profile.value().peak_acceleration_up_mm_s2, 1, 1e-7) << trial;
+  }
+  EXPECT_EQ(rest_to_rest_s(0, published_limits()[0]), 0);
+}
+
 TEST(RestToRest, DecidesHowTheJerkOfTableOneIsRead) {
   const auto minutes = [](AxisBounds limits, double jerk) {
     limits.jerk = jerk;

@@ -54,5 +54,7 @@ Result<Pose> inverse(const Machine& machine, const Target& target, const Inverse
 
 /// `angle_rad` with the whole turns that bring it nearest to `near_rad`; half a turn off, the larger angle.
 double nearest_turn(double angle_rad, double near_rad) noexcept;
+/// The same among the turns that the limits allow; nearest_turn() where none is.
+double allowed_turn(double angle_rad, double near_rad, const JointLimits& limits) noexcept;
 
 }  // namespace gravure::kinematics

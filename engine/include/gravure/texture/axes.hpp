@@ -22,8 +22,10 @@ struct SevenAxes {
 };
 
 /// The axes of an X-Y-Z-A-C machine (kinematics::xyzac_machine) along a path: the stages bring each point of `stages`
-/// and its normal under the beam, the galvo reaches from there to the point of `targets`. C keeps its turns from point
-/// to point and stands still at the pole; `branch` is the sign of A. Errors as kinematics::inverse(), naming the point.
+/// and its normal under the beam, the galvo reaches from there to the point of `targets`. In closed form, [A] eqs 6 to
+/// 13, for both sign conventions and wherever A and C meet. C keeps its turns from point to point and stands still at
+/// the pole; `branch` is the sign of A. bad_argument for machines that are not so (rotary_table()) and points that are
+/// not finite, out_of_range for a joint beyond its limits, naming the point.
 Result<std::vector<SevenAxes>> seven_axes(const kinematics::Machine& machine, std::span<const SurfacePoint> targets,
                                           std::span<const SurfacePoint> stages,
                                           kinematics::Branch branch = kinematics::Branch::positive);

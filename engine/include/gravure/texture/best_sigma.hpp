@@ -18,6 +18,7 @@ struct PathMachine {
   double servo_s = 50e-6;
   kinematics::Branch branch = kinematics::Branch::positive;  ///< sign of A
   Clamping clamping = {};                                    ///< how the workpiece lies
+  std::int64_t memory_bytes = 0;                             ///< PathTimingRequest::memory_bytes
 };
 
 /// A split with the axes and times that follow from it.
@@ -26,7 +27,7 @@ struct TimedSplit {
   std::vector<SurfacePoint> lying;  ///< its targets in the clamping; empty: it lies level
   std::vector<SevenAxes> axes;
   std::vector<double> pulse_mm;
-  TimedPath timed;
+  TimedPath timed;       ///< its motion only from time_split(): split_by_time() would have to hold more than one
   double fastest_s = 0;  ///< of all sigmas that were looked at
   double published_mm = 0;  ///< the sigma of the published rule; 0: nobody asked for it
   int tries = 0;         ///< sigmas that were timed

@@ -25,7 +25,8 @@ struct PathTimingRequest {
   /// The stages' place along the path is the texture's, averaged over a window of which this is the standard deviation.
   /// 0: a quarter of the time that `sigma_points` take, but from 5 to 60 ms.
   double smoothing_s = 0;
-  double sigma_points = 0;  ///< of the split, in points; what the stages have been smoothed by already
+  double sigma_points = 0;        ///< of the split, in points; what the stages have been smoothed by already
+  std::int64_t memory_bytes = 0;  ///< check_planning_memory(); 0: as much as it takes
 };
 
 /// Motion along a path within limits. It holds what it needs of the request.
@@ -44,8 +45,9 @@ struct TimedPath {
 /// place along it, smoothed in time, and U and V reach from there to the spot: [U V w] = M (p - p'), both moving.
 /// Where stages would leave their limits the moves round there are slowed until none does. Looks at two places or more
 /// a point; prove_limits() and prove_seven_axes() look at every instant.
-/// out_of_range for fewer than two points, a servo period or limits that are not above 0, or points that no timing can
-/// keep within limits (a jump of an axis); cancelled on request.
+/// out_of_range for fewer than two points, a servo period that is not 1 us to 1 s, limits that are not above 0, points
+/// that no timing can keep within limits (a jump of an axis), and motion longer than a program holds or too long to be
+/// planned: these are found from lower bounds of the time, before memory is asked for; cancelled on request.
 Result<TimedPath> time_seven_axes(const PathTimingRequest& request, const CancelToken& cancel);
 
 /// Motion whose every instant has been looked at.

@@ -20,8 +20,16 @@ enum class Stops : std::uint8_t {
 /// 1e-9 rad and they are equally far apart.
 std::vector<std::size_t> resting_points(std::span<const SurfacePoint> targets, Stops stops);
 
-/// Shortest time of one axis from rest to rest: motion::plan_profile() with equal limits to both sides, [A] section on
-/// efficiency. Limits must be above 0.
+/// The shortest move of one axis from rest to rest, [A] section on efficiency: what motion::plan_profile() makes with
+/// equal limits to both sides, in closed form.
+struct RestToRest {
+  double time_s = 0;
+  double speed = 0;         ///< reached, magnitude
+  double acceleration = 0;  ///< reached
+};
+/// Limits must be above 0.
+RestToRest rest_to_rest(double distance, const AxisBounds& limits);
+/// Its time.
 double rest_to_rest_s(double distance, const AxisBounds& limits);
 
 /// The time model of [A]: at every one of `stops` the axes `first` to `last` (of kPathAxes) rest, between two of them
