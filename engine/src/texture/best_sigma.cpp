@@ -16,6 +16,8 @@ PathTimingRequest TimedSplit::request(const PathMachine& machine, const TextureP
   request.limits = machine.limits;
   request.stops = machine.stops;
   request.servo_s = machine.servo_s;
+  request.corner_law = machine.corner_law;
+  request.servos = machine.servos;
   request.memory_bytes = machine.memory_bytes;
   request.sigma_points = split.sigma_mm / path.step_mm;
   const Result<RotaryTable> table = rotary_table(machine.machine);
@@ -40,6 +42,7 @@ Result<TimedSplit> time_split(Split split, const TexturePath& path, const PathMa
   timed.pulse_mm = pulse_lengths_mm(path, timed.split.targets);
   GRAVURE_TRY(timed.timed, time_seven_axes(timed.request(machine, path), cancel));
   timed.fastest_s = timed.timed.time_s;
+  timed.widest_lag_mm = timed.timed.stage_lag_mm;
   timed.tries = 1;
   return timed;
 }
@@ -58,6 +61,7 @@ Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surfac
   if (splitter.keeps_limits()) {
     return best;
   }
+  const double widest_lag_mm = best.widest_lag_mm;
   double fastest_s = best.timed.time_s;
   int tries = 1;
   const double published_mm = best.split.sigma_mm;
@@ -93,6 +97,7 @@ Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surfac
     (good ? good_mm : bad_mm) = middle_mm;
   }
   best.fastest_s = fastest_s;
+  best.widest_lag_mm = widest_lag_mm;
   best.tries = tries;
   best.published_mm = published_mm;
   best.split.tries = splits;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -39,6 +40,12 @@ CornerDemand corner_demand(double turn_rad, double speed_mm_s, double sigma_mm) 
 Result<double> corner_feed_limit_mm_s(double turn_rad, double most_throw_mm, double most_acceleration_mm_s2) {
   GRAVURE_CHECK(check(turn_rad, most_throw_mm, most_acceleration_mm_s2));
   return std::sqrt(2 * std::numbers::pi * most_throw_mm * most_acceleration_mm_s2) / bend(turn_rad);
+}
+
+double corner_speed_mm_s(double turn_rad, double sigma_mm, double most_acceleration_mm_s2, double most_jerk_mm_s3) {
+  const CornerDemand unit = corner_demand(turn_rad, 1, sigma_mm);
+  return std::min(std::sqrt(most_acceleration_mm_s2 / unit.acceleration_mm_s2),
+                  std::cbrt(most_jerk_mm_s3 / unit.jerk_mm_s3));
 }
 
 Result<double> corner_sigma_mm(double turn_rad, double most_throw_mm) {

@@ -6,9 +6,13 @@
 #include <cmath>
 
 #include "motion_windows.hpp"
+#include "off_the_point.hpp"
 #include "servo_step.hpp"
 
 namespace gravure::texture {
+
+using kinematics::Vector3;
+
 namespace {
 
 /// Keeps the largest and the mean square.
@@ -35,21 +39,7 @@ class Worst {
   std::int64_t count_ = 0;
 };
 
-using kinematics::Vector3;
 using AxisErrors = std::array<double, kPathAxes.size()>;
-
-/// Where the light is off its point of the surface, in the head's coordinates: the point turns with the table by what A
-/// and C are behind, the light lags by what X, Y, Z, U and V are.
-Vector3 off_the_point(const RotaryTable& table, const std::array<double, kPathAxes.size()>& axes,
-                      const AxisErrors& behind) {
-  const Vector3 sense(1, table.sense, 1);
-  const Vector3 point(axes[0] + axes[5], axes[1] + axes[6], axes[2]);
-  const double a_rad = table.sense * axes[3];
-  const Vector3 c_axis(0, -std::sin(a_rad), std::cos(a_rad));
-  const Vector3 turn = table.sense * (behind[3] * Vector3::UnitX() + behind[4] * c_axis);
-  const Vector3 turned = turn.cross(sense.cwiseProduct(point));
-  return sense.cwiseProduct(turned) - Vector3(behind[0] + behind[5], behind[1] + behind[6], behind[2]);
-}
 
 class Prediction {
  public:
@@ -89,6 +79,17 @@ class Prediction {
 };
 
 }  // namespace
+
+Vector3 off_the_point(const RotaryTable& table, const std::array<double, kPathAxes.size()>& axes,
+                      const std::array<double, kPathAxes.size()>& behind) {
+  const Vector3 sense(1, table.sense, 1);
+  const Vector3 point(axes[0] + axes[5], axes[1] + axes[6], axes[2]);
+  const double a_rad = table.sense * axes[3];
+  const Vector3 c_axis(0, -std::sin(a_rad), std::cos(a_rad));
+  const Vector3 turn = table.sense * (behind[3] * Vector3::UnitX() + behind[4] * c_axis);
+  const Vector3 turned = turn.cross(sense.cwiseProduct(point));
+  return sense.cwiseProduct(turned) - Vector3(behind[0] + behind[5], behind[1] + behind[6], behind[2]);
+}
 
 SevenServos assumed_servos() noexcept {
   constexpr double kDamping = 0.7;

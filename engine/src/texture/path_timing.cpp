@@ -30,6 +30,7 @@ Result<void> check_request(const PathTimingRequest& request) {
   if (!(request.smoothing_s >= 0 && request.smoothing_s <= 1)) {
     return Error{ErrorCode::out_of_range, fmt::format("smoothing_s = {}: must be 0 to 1", request.smoothing_s)};
   }
+  GRAVURE_CHECK(check_servos(request.servos));
   GRAVURE_CHECK(check_planning_memory(request.targets.size(), request.memory_bytes));
   GRAVURE_CHECK(check_limits(request.limits));
   return check_least_time(request);

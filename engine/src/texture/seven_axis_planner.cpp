@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "corner_feed.hpp"
 #include "motion_size.hpp"
 #include "slow_stages.hpp"
+#include "stage_lag.hpp"
 
 namespace gravure::texture {
 namespace {
@@ -50,6 +52,9 @@ SevenAxisPlanner::SevenAxisPlanner(const PathTimingRequest& request)
   const std::size_t ends[] = {0, request.targets.size() - 1};
   stages_ = StageSpline(request.axes, ends);
   feed_ = PathFeed(path_);
+  if (request.corner_law) {
+    corner_feed_ = corner_feed(request);
+  }
 }
 
 Result<void> SevenAxisPlanner::start() {
@@ -84,7 +89,7 @@ Result<void> SevenAxisPlanner::settle(const CancelToken& cancel) {
       return Error{ErrorCode::cancelled, "stopped while the path was being timed"};
     }
     ++passes_;
-    const SlowDown slow = slow_stages(request_.limits, stages_, place_, gain_of(pass), feed_, path_);
+    const SlowDown slow = slow_stages(request_.limits, stages_, place_, corner_feed_, gain_of(pass), feed_, path_);
     if (slow.needed && pass == kMostPasses) {
       return Error{
           ErrorCode::out_of_range,
@@ -124,6 +129,7 @@ TimedPath SevenAxisPlanner::timed() const {
         return run.stretch > 1 || slowed_feed(path_, run);
       }));
   timed.passes = passes_;
+  timed.stage_lag_mm = stage_lag_mm(request_, stages_, place_);
   timed.smoothing_s = static_cast<double>(cell_) * kSpread * request_.servo_s;
   timed.motion = std::make_shared<SevenAxisMotion>(
       path_, stages_, place_, std::vector<double>(request_.pulse_mm.begin(), request_.pulse_mm.end()), request_.table);

@@ -35,6 +35,7 @@ class SevenAxisPlanner {
   PathFeed feed_;
   StageSpline stages_;
   SmoothPlace place_;
+  std::vector<double> corner_feed_;  ///< empty: no corner law
   std::int64_t cell_ = 2;
   int passes_ = 0;
 };

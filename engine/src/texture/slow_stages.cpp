@@ -43,6 +43,12 @@ bool within(const SevenLimits& limits, const StageRates& r, double share) {
   return kept;
 }
 
+/// The speed by what is allowed at the points to both sides.
+double feed_share(std::span<const double> most_speed, const PlaceState& where) {
+  const std::size_t i = where.place.index;
+  return most_speed.empty() ? 0 : where.speed / std::min(most_speed[i], most_speed[i + 1]);
+}
+
 Need need_of(const SevenLimits& limits, const StageRates& r) {
   Need need;
   for (std::size_t k = 0; k < kStageAxes; ++k) {
@@ -185,8 +191,8 @@ void Needs::slow(PathFeed& feed, PathRuns& path) const {
   }
 }
 
-SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, double gain,
-                     PathFeed& feed, PathRuns& path) {
+SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place,
+                     std::span<const double> most_speed, double gain, PathFeed& feed, PathRuns& path) {
   // Of the factor: between two looks nothing is seen, and feeds use their limits everywhere.
   const double allowed = feed.any() ? 0.995 : 0.9995;
   const double more = 1.0015 / allowed;  // so that the next pass is the last
@@ -199,8 +205,10 @@ SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const
     const PlaceState where = place.state(period, path.period_s());
     const StageState state = stages.state(where.place);
     const StageRates now = rates(state, where);
-    if (!within(limits, now, allowed)) {
-      const Need need = need_of(limits, now);
+    const double of_feed = feed_share(most_speed, where);
+    if (of_feed > allowed || !within(limits, now, allowed)) {
+      Need need = need_of(limits, now);
+      need.factor = std::max(need.factor, of_feed);
       slow.needed = true;
       needs.add(static_cast<std::int64_t>(std::floor(period - cell)),
                 static_cast<std::int64_t>(std::ceil(period + cell)), 1 + (need.factor * more - 1) * gain);

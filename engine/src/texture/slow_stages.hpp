@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "gravure/texture/path_timing.hpp"
@@ -40,9 +41,10 @@ struct SlowDown {
   std::size_t axis = 0;
 };
 /// Looks at the stages all along and slows the runs round every place where a limit is broken, less and less with
-/// the distance from it; `gain` times as much as one place by itself would ask for, 1 or more.
-SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place, double gain,
-                     PathFeed& feed, PathRuns& path);
+/// the distance from it; `gain` times as much as one place by itself would ask for, 1 or more. `most_speed`: points a
+/// second at each point (corner_feed()), or empty.
+SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place,
+                     std::span<const double> most_speed, double gain, PathFeed& feed, PathRuns& path);
 
 /// Caps a run of the stages alone. The axis that cannot be kept within its limits, if there is one.
 std::optional<std::size_t> cap_by_stages(const SevenLimits& limits, const StageSpline& stages, const PathRuns& path,

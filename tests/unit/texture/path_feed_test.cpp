@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -56,6 +57,27 @@ TEST(LongRuns, KeepEveryLimitOnHardSurfaces) {
       ADD_FAILURE() << surface << ": " << kPathAxes[use.axis] << " " << limit_name(use.kind) << " " << use.share();
     }
   }
+}
+
+/// A bump slows the line where it is: far from it the spot is where it is on the plane, before and behind. One line, so
+/// that even a planner that finds no end stops soon.
+TEST(LongRuns, AreAsFastAsEverAwayFromAHardPlace) {
+  const auto passed_s = [](const char* surface, double from_mm, double to_mm) {
+    const Lines lines(surface, 10, 1);
+    const auto timed = time_seven_axes(lines.request, {});
+    EXPECT_TRUE(timed) << timed.error().message;
+    EXPECT_LT(timed.value().passes, 60) << surface;
+    std::vector<PathInstant> at(static_cast<std::size_t>(timed.value().motion->instants()));
+    EXPECT_TRUE(timed.value().motion->read(0, at));
+    const auto periods = std::count_if(
+        at.begin(), at.end(), [&](const PathInstant& now) { return now.along_mm > from_mm && now.along_mm < to_mm; });
+    return static_cast<double>(periods) * lines.request.servo_s;
+  };
+  const char* easy = "0.3*x";
+  const char* hard = "0.3*x + 0.3*exp(-(x/0.4)^2)";
+  EXPECT_LT(passed_s(hard, 0, 2), 1.05 * passed_s(easy, 0, 2));
+  EXPECT_LT(passed_s(hard, 8, 10), 1.05 * passed_s(easy, 8, 10));
+  EXPECT_GT(passed_s(hard, 4.5, 5.5), 1.3 * passed_s(easy, 4.5, 5.5));
 }
 
 /// What a hard place costs does not grow with the line that it lies on: slowing whole lines would double it.

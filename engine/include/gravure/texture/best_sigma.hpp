@@ -18,6 +18,8 @@ struct PathMachine {
   double servo_s = 50e-6;
   kinematics::Branch branch = kinematics::Branch::positive;  ///< sign of A
   Clamping clamping = {};                                    ///< how the workpiece lies
+  bool corner_law = false;                                   ///< PathTimingRequest::corner_law
+  SevenServos servos = assumed_servos();                     ///< for the stages' lag
   std::int64_t memory_bytes = 0;                             ///< PathTimingRequest::memory_bytes
 };
 
@@ -27,10 +29,11 @@ struct TimedSplit {
   std::vector<SurfacePoint> lying;  ///< its targets in the clamping; empty: it lies level
   std::vector<SevenAxes> axes;
   std::vector<double> pulse_mm;
-  TimedPath timed;       ///< its motion only from time_split(): split_by_time() would have to hold more than one
-  double fastest_s = 0;  ///< of all sigmas that were looked at
-  double published_mm = 0;  ///< the sigma of the published rule; 0: nobody asked for it
-  int tries = 0;         ///< sigmas that were timed
+  TimedPath timed;           ///< its motion only from time_split(): split_by_time() would have to hold more than one
+  double fastest_s = 0;      ///< of all sigmas that were looked at
+  double widest_lag_mm = 0;  ///< TimedPath::stage_lag_mm of the published rule's sigma, beside that of `timed`
+  double published_mm = 0;   ///< the sigma of the published rule; 0: nobody asked for it
+  int tries = 0;             ///< sigmas that were timed
   /// The points of the texture where the machine finds them.
   std::span<const SurfacePoint> targets() const noexcept { return lying.empty() ? split.targets : lying; }
   /// For time_seven_axes() and prove_seven_axes(); refers to this.

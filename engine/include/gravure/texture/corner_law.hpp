@@ -19,6 +19,10 @@ CornerDemand corner_demand(double turn_rad, double speed_mm_s, double sigma_mm);
 /// out_of_range for arguments that are not above 0 (the turn: not from 0 to pi). Infinite for no turn.
 Result<double> corner_feed_limit_mm_s(double turn_rad, double most_throw_mm, double most_acceleration_mm_s2);
 
+/// The fastest a corner can be run with that sigma, by what stages can: where acceleration or jerk of corner_demand()
+/// reaches the limit. All above 0; infinite for no turn.
+double corner_speed_mm_s(double turn_rad, double sigma_mm, double most_acceleration_mm_s2, double most_jerk_mm_s3);
+
 /// The sigma at which both limits are reached at that feed.
 Result<double> corner_sigma_mm(double turn_rad, double most_throw_mm);
 

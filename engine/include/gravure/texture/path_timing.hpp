@@ -8,6 +8,7 @@
 #include "gravure/core/progress.hpp"
 #include "gravure/texture/axes.hpp"
 #include "gravure/texture/axis_limits.hpp"
+#include "gravure/texture/following_error.hpp"
 #include "gravure/texture/prove_limits.hpp"
 #include "gravure/texture/stop_times.hpp"
 
@@ -25,8 +26,12 @@ struct PathTimingRequest {
   /// The stages' place along the path is the texture's, averaged over a window of which this is the standard deviation.
   /// 0: a quarter of the time that `sigma_points` take, but from 5 to 60 ms.
   double smoothing_s = 0;
-  double sigma_points = 0;        ///< of the split, in points; what the stages have been smoothed by already
-  std::int64_t memory_bytes = 0;  ///< check_planning_memory(); 0: as much as it takes
+  double sigma_points = 0;  ///< of the split, in points; what the stages have been smoothed by already
+  /// Lets the stages pass corners no faster than the law of a Gaussian of `sigma_points` allows (corner_speed_mm_s()),
+  /// where the path is straight for three sigma to both sides: nothing more where the split is that Gaussian.
+  bool corner_law = false;
+  SevenServos servos = assumed_servos();  ///< for TimedPath::stage_lag_mm
+  std::int64_t memory_bytes = 0;          ///< check_planning_memory(); 0: as much as it takes
 };
 
 /// Motion along a path within limits. It holds what it needs of the request.
@@ -34,6 +39,10 @@ struct TimedPath {
   std::shared_ptr<const PathMotion> motion;
   double time_s = 0;       ///< of all instants, lead-in and run-out of the stages included
   double smoothing_s = 0;  ///< as it was chosen
+  /// The most that the light will be off its point, across the beam, because the stages follow behind: what loops of
+  /// `servos` have at steady speed and acceleration, looked at every half cell of the smoothing. predict_following()
+  /// solves them and adds the galvo.
+  double stage_lag_mm = 0;
   std::size_t runs = 0;    ///< moves from rest to rest
   std::size_t slowed = 0;  ///< those of them that the stages' limits have made slower
   int passes = 0;          ///< times that the limits were looked at before none was broken
