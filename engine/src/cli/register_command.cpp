@@ -6,6 +6,7 @@
 #include <string>
 
 #include "gravure/formats/contours.hpp"
+#include "gravure/formats/image_files.hpp"
 #include "gravure/formats/points.hpp"
 #include "gravure/registration/refine_contours.hpp"
 #include "gravure/registration/register_scan.hpp"
@@ -88,6 +89,11 @@ double share(const Registration& found) {
   return static_cast<double>(found.inliers) / static_cast<double>(found.scan_points);
 }
 
+/// Everything is held and nothing else fits nearly as well.
+bool is_sure(const Registration& found) {
+  return found.converged && !found.degenerate && !found.scale_refused && !found.ambiguous;
+}
+
 Json registration_json(const Registration& found) {
   Json transform = Json::array();
   const Eigen::Matrix4d matrix = found.cad_to_scan.matrix();
@@ -106,6 +112,7 @@ Json registration_json(const Registration& found) {
           {"degenerate", found.degenerate},
           {"scale_refused", found.scale_refused},
           {"ambiguous", found.ambiguous},
+          {"sure", is_sure(found)},
           {"shape", found.shape},
           {"eigenvalues", numbers_json(found.eigenvalues)},
           {"deviations_mm", numbers_json(found.deviations_mm)},
@@ -139,6 +146,7 @@ std::string registration_text(const Registration& found) {
   for (const registration::WeakDirection& weak : found.weak_directions) {
     text += fmt::format("not held: {}\n", weak.name);
   }
+  text += found.ambiguous ? "AMBIGUOUS: another pose fits nearly as well\n" : "";
   return text;
 }
 
@@ -165,7 +173,7 @@ void warn_of(const Registration& found) {
     warn("the points do not hold the scale: it is 1");
   }
   if (found.ambiguous) {
-    warn("another pose fits nearly as well: is the part symmetric?");
+    warn("another pose fits nearly as well: is the part symmetric? Do not rely on this one before it is checked");
   }
 }
 
@@ -222,6 +230,7 @@ Result<int> run_register(const RegisterOptions& options, bool json) {
   if (!contours.contours.empty()) {
     GRAVURE_TRY(const auto placed, place_contours(options, cad, scan, found, contours));
     document["contours"] = contours_json(placed);
+    GRAVURE_TRY(document["contours_out_sha256"], sha256_file(options.contours_output));
     text += fmt::format("{} contours written to {}\n", placed.size(), options.contours_output);
   }
   if (!options.residuals.empty()) {
@@ -231,7 +240,7 @@ Result<int> run_register(const RegisterOptions& options, bool json) {
     GRAVURE_CHECK(write_whole(options.output, document.dump(2) + "\n"));
   }
   json ? print_json(document) : print(text);
-  return found.converged && !found.degenerate && !found.scale_refused ? kDone : kLimitViolated;
+  return is_sure(found) ? kDone : kLimitViolated;
 }
 
 }  // namespace

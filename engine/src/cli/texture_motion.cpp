@@ -128,17 +128,8 @@ std::string key_of(const Job& job, std::string_view message, std::string_view ke
 }  // namespace
 
 Error placed_error(const FreeformJob& job, std::string_view key, Error error) {
-  if (error.code == ErrorCode::cancelled) {
-    return error;
-  }
-  std::string at = key_of(job.job, error.message, key);
-  for (const auto& [name, place] : job.job.places) {
-    const std::string last = name.substr(name.find_last_of('.') + 1) + " ";
-    const bool begins = error.message.rfind(name + " ", 0) == 0 || error.message.rfind(last, 0) == 0;
-    at = begins && name.find('.') != std::string::npos ? name : at;
-  }
-  error.message = job.job.place_of(at) + error.message;
-  return error;
+  const std::string at = key_of(job.job, error.message, key);
+  return placed_error(job.job, at, std::move(error));
 }
 
 double five_digits(double value) {

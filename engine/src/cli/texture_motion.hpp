@@ -8,6 +8,7 @@
 
 #include "gravure/formats/freeform_job.hpp"
 #include "gravure/texture/best_sigma.hpp"
+#include "placed_error.hpp"
 #include "texture_options.hpp"
 
 namespace gravure::cli {

@@ -26,6 +26,7 @@
 #include "program_verification.hpp"
 #include "report_writer.hpp"
 #include "verb.hpp"
+#include "zones_program.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -245,6 +246,12 @@ Result<int> verify_job(const VerifyArguments& options, const Command& command) {
     GRAVURE_TRY(const FreeformJob job, read_freeform_job(options.input));
     GRAVURE_TRY(const PlannedTexture planned, plan_texture(job, Depth::motion, with_texture_memory(command)));
     GRAVURE_CHECK(compile_texture(job, planned, path, {}));
+    return verify_program(path, options, command);
+  }
+  if (mode_of_job(options.input) == Mode::zones) {
+    GRAVURE_TRY(const LoadedZonesJob loaded, load_zones_job(options.input));
+    GRAVURE_TRY(const ZonesProgram laid, lay_out_zones(loaded));
+    GRAVURE_CHECK(compile_zones_program(loaded, laid, path));
     return verify_program(path, options, command);
   }
   const ImageFiles files;

@@ -107,6 +107,11 @@ Json plan_json(const ZonesArguments& options, const zones::ZonePlanRequest& requ
   return document;
 }
 
+/// A zone without height is one layer.
+std::string layer_text(double thickness_mm) {
+  return thickness_mm > 0 ? fmt::format("{:.4f}", thickness_mm) : "flat";
+}
+
 std::string plan_text(const zones::ZonePlanRequest& request, const ZonePlan& plan) {
   std::string text = fmt::format("contours     {} of {:.3f} mm in all{}\n", request.contours.size(), plan.length_mm,
                                  plan.pieces.size() > request.contours.size()
@@ -120,10 +125,10 @@ std::string plan_text(const zones::ZonePlanRequest& request, const ZonePlan& pla
   for (std::size_t z = 0; z < plan.zones.size(); ++z) {
     const PlannedZone& zone = plan.zones[z];
     const kinematics::Vector3& d = zone.frame.z;
-    text += fmt::format("{:>5} {:>9} {:>14.4f} {:>13.4f} {:>7} {:>9.4f}  {:.5f}, {:.5f}, {:.5f}\n", z,
-                        zone.zone.pieces.size(), zone.zone.max_incidence_rad * kDegreesPerRad,
-                        zone.zone.max_pairwise_rad * kDegreesPerRad, zone.layers.size(), zone.layer_thickness_mm,
-                        d.x() + 0.0, d.y() + 0.0, d.z() + 0.0);
+    text +=
+        fmt::format("{:>5} {:>9} {:>14.4f} {:>13.4f} {:>7} {:>9}  {:.5f}, {:.5f}, {:.5f}\n", z, zone.zone.pieces.size(),
+                    zone.zone.max_incidence_rad * kDegreesPerRad, zone.zone.max_pairwise_rad * kDegreesPerRad,
+                    zone.layers.size(), layer_text(zone.layer_thickness_mm), d.x() + 0.0, d.y() + 0.0, d.z() + 0.0);
   }
   for (const std::string& violation : plan.violations) {
     text += "violation: " + violation + "\n";
@@ -137,13 +142,22 @@ Result<int> plan_contours(const ZonesArguments& options, const Command& command)
     return Error{ErrorCode::bad_argument, "--k and --not-normalised belong to --method kmeans"};
   }
   zones::ZonePlanRequest request;
-  GRAVURE_TRY(request.contours, load_contours(options.contours, options.transform));
+  GRAVURE_TRY(request.contours, load_contours(options.contours));
+  if (!options.transform.empty()) {
+    GRAVURE_CHECK(move_contours(options.transform, options.contours, request.contours));
+  }
   GRAVURE_TRY(request.machine, load_zones_machine(options.machine, options.field_mm));
   request.method = options.method == "cover" ? zones::Method::cover : zones::Method::kmeans;
   request.kmeans = {options.k, !options.not_normalised, options.seed};
   request.max_incidence_rad = options.max_incidence_deg / kDegreesPerRad;
   request.max_layer_mm = options.layer_mm;
-  GRAVURE_TRY(const ZonePlan plan, zones::plan_zones(request));
+  request.cancel = &cancel_token();
+  const Result<ZonePlan> planned = [&request] {
+    ProgressBar bar("plan zones", "parts");
+    request.progress = &bar;
+    return zones::plan_zones(request);
+  }();
+  GRAVURE_TRY(const ZonePlan plan, planned);
   if (!options.plot.empty()) {
     GRAVURE_CHECK(write_whole(options.plot, zones_to_svg(plan, options.contours)));
   }

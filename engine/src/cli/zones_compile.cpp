@@ -3,23 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
-#include "gravure/core/file_output.hpp"
-#include "gravure/formats/grv.hpp"
-#include "gravure/formats/image_files.hpp"
-#include "gravure/pipeline/compile_path.hpp"
-#include "gravure/pipeline/path_plan.hpp"
-#include "gravure/zones/zone_motion.hpp"
 #include "path_program.hpp"
 #include "program_files.hpp"
+#include "text_output.hpp"
 #include "texture_options.hpp"
-#include "zones_job_loader.hpp"
 #include "zones_plot.hpp"
+#include "zones_program.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -32,104 +26,6 @@ struct CompileOptions {
   std::string output;
   std::string plot;
 };
-
-/// Of a number of the machine, which was made exact once and turned into other units since.
-Rational ten_digits(double value) {
-  return exact_decimal(value, 10);
-}
-
-std::optional<Rational> ten_digits(const std::optional<double>& value, double unit) {
-  return value ? std::optional(ten_digits(*value * unit)) : std::nullopt;
-}
-
-Result<ZonePlan> plan_within_limits(const LoadedZonesJob& loaded) {
-  GRAVURE_TRY(ZonePlan plan, zones::plan_zones(loaded.request));
-  if (plan.violations.empty()) {
-    return plan;
-  }
-  std::string text = "the zones break their limits, nothing was written:";
-  for (const std::string& violation : plan.violations) {
-    text += "\n  " + violation;
-  }
-  return Error{ErrorCode::out_of_range, text};
-}
-
-PathAxisPlan stage_plan(const kinematics::Joint& joint) {
-  const double unit = joint.kind == kinematics::JointKind::revolute ? kDegreesPerRad : 1;
-  const kinematics::JointLimits& limits = joint.limits;
-  PathAxisPlan axis;
-  axis.limits = {ten_digits(limits.max_speed, unit), ten_digits(limits.max_acceleration, unit),
-                 ten_digits(limits.max_jerk, unit)};
-  axis.least = ten_digits(limits.least, unit);
-  axis.most = ten_digits(limits.most, unit);
-  return axis;
-}
-
-PathAxisPlan galvo_plan(const kinematics::ScanHead& head) {
-  PathAxisPlan axis;
-  axis.limits = {ten_digits(head.max_speed_mm_s, 1), ten_digits(head.max_acceleration_mm_s2, 1),
-                 ten_digits(head.max_jerk_mm_s3, 1)};
-  axis.most = ten_digits(head.field_mm / 2);
-  axis.least = -*axis.most;
-  return axis;
-}
-
-PathPlanRequest plan_request(const LoadedZonesJob& loaded) {
-  const ZonesJob& job = loaded.job;
-  const kinematics::Machine& machine = loaded.request.machine;
-  PathPlanRequest request;
-  request.title = job.title;
-  request.mode = Mode::zones;
-  request.laser = job.laser;
-  request.clock_multiplier = job.clock_multiplier;
-  request.servo_period_us = job.servo_us;
-  request.pulse_pitch_um = job.pulse_pitch_um;
-  PathPlan& path = request.path;
-  for (std::size_t axis = 0; axis < path.axes.size(); ++axis) {
-    const auto joint = std::find_if(machine.joints.begin(), machine.joints.end(),
-                                    [&](const kinematics::Joint& each) { return each.name == kPathAxes[axis]; });
-    path.axes[axis] = joint != machine.joints.end() ? stage_plan(*joint) : galvo_plan(machine.head);
-  }
-  const Rational half_layer_um(kUmPerMm / 2);
-  path.max_focus_offset_um = half_layer_um * job.layer_mm.value_or(ten_digits(loaded.request.max_layer_mm));
-  path.max_incidence_deg = job.max_incidence_deg;
-  path.max_landing_um = job.max_landing_um;
-  path.machine = loaded.machine;
-  for (std::size_t i = 0; i < path.rotary_centre_mm.size(); ++i) {
-    path.rotary_centre_mm[i] = ten_digits(machine.head.origin_mm[static_cast<Eigen::Index>(i)]);
-  }
-  path.surface = job.contours + (job.transform.empty() ? "" : ", moved by " + job.transform);
-  return request;
-}
-
-/// What the job names, as sources of its program: without a size, for they are no pictures.
-Result<std::vector<SourceImage>> zone_sources(const LoadedZonesJob& loaded) {
-  std::vector<SourceImage> sources;
-  const std::string* const names[] = {&loaded.job.contours, &loaded.job.transform, &loaded.job.machine};
-  for (std::size_t i = 0; i < std::size(names); ++i) {
-    if (!names[i]->empty()) {
-      GRAVURE_TRY(const std::string hash, sha256_file(loaded.inputs[i + 1]));  // the first is the job itself
-      sources.push_back({*names[i], 0, 0, 0, hash});
-    }
-  }
-  return sources;
-}
-
-Result<CompiledPath> compile_motion(const CompileOptions& options, const LoadedZonesJob& loaded,
-                                    const ZoneMotion& motion) {
-  GRAVURE_TRY(const PathPulses pulses, all_pulses("[marking] pulse_pitch_um",
-                                                  to_double(loaded.job.pulse_pitch_um) / kUmPerMm, motion.length_mm()));
-  ProgramHeader header;
-  GRAVURE_TRY(header.sources, zone_sources(loaded));
-  header.job_text = loaded.text;
-  header.job_path = relative_to(options.job, std::filesystem::path(options.output).parent_path());
-  GRAVURE_TRY(header.plan, make_path_plan(plan_request(loaded), motion.instants(), pulses.count,
-                                          static_cast<std::int64_t>(motion.targets().size())));
-  GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
-              create_grv(options.output, 1, header.plan.rotary.lines_per_revolution, header.line_bytes()));
-  ProgressBar bar("compile");
-  return compile_path(std::move(header), motion, pulses, motion.targets(), *sink, &cancel_token(), &bar);
-}
 
 double worst_incidence_rad(const ZonePlan& plan) {
   double worst = 0;
@@ -219,11 +115,11 @@ void report(const CompileOptions& options, const LoadedZonesJob& loaded, const Z
       fmt::format("{}: {:.3f} s in {} periods of {} us; {} pulses on {} contours of {:.3f} mm in all\n", options.output,
                   time_s, made.header.plan.rotary.lines_per_revolution, to_decimal_string(loaded.job.servo_us),
                   spacing.fired, loaded.request.contours.size(), motion.length_mm());
-  text += fmt::format(
-      "zones        {}, at least {}; {} stops, {} strokes; incidence {:.4f} deg at most, layers of "
-      "{:.4f} mm\n",
-      plan.zones.size(), plan.lower_bound, times.stops, times.strokes, worst_incidence_rad(plan) * kDegreesPerRad,
-      thickest_layer_mm(plan));
+  text += fmt::format("zones        {}, at least {}; {} stops, {} strokes; incidence {:.4f} deg at most, {}\n",
+                      plan.zones.size(), plan.lower_bound, times.stops, times.strokes,
+                      worst_incidence_rad(plan) * kDegreesPerRad,
+                      thickest_layer_mm(plan) > 0 ? fmt::format("layers of {:.4f} mm", thickest_layer_mm(plan))
+                                                  : "each flat: one layer");
   text += loaded.optics ? optics_text(*loaded.optics, plan) : "";
   text += fmt::format("time         {:.3f} s of stage moves, {:.3f} s of jumps, {:.3f} s of marks\n", times.stage_s,
                       times.jump_s, times.mark_s);
@@ -231,23 +127,32 @@ void report(const CompileOptions& options, const LoadedZonesJob& loaded, const Z
   print(text);
 }
 
+/// Drawn, but not in its place before the program is in its own.
+Result<std::optional<TextOutput>> draw(const CompileOptions& options, const LoadedZonesJob& loaded,
+                                       const ZonesProgram& laid) {
+  if (options.plot.empty()) {
+    return std::optional<TextOutput>();
+  }
+  GRAVURE_TRY(TextOutput plot, TextOutput::create(options.plot));
+  plot.text() = zones_to_svg(laid.zones, loaded.job.contours);
+  if (!plot.flush(true)) {
+    return Error{ErrorCode::io, options.plot + ": cannot be written: is the disk full?"};
+  }
+  return std::optional(std::move(plot));
+}
+
 Result<int> compile_zones(const CompileOptions& options, const Command& command) {
   GRAVURE_TRY(const LoadedZonesJob loaded, load_zones_job(options.job));
-  GRAVURE_CHECK(refuse_overwrite({{"--output", options.output}, {"--plot", options.plot}}, loaded.inputs));
-  GRAVURE_TRY(const ZonePlan plan, plan_within_limits(loaded));
-  constexpr double kUsPerS = 1e6;
-  zones::ZoneMotionRequest request;
-  request.servo_period_s = to_double(loaded.job.servo_us) / kUsPerS;
-  request.mark_speed_mm_s = to_double(loaded.job.mark_speed_mm_s);
-  if (loaded.job.jump_speed_mm_s) {
-    request.jump_speed_mm_s = to_double(*loaded.job.jump_speed_mm_s);
+  const ZonesFiles& files = loaded.files;
+  GRAVURE_CHECK(refuse_overwrite({{"--output", options.output}, {"--plot", options.plot}},
+                                 {options.job, files.contours, files.transform, files.machine}));
+  GRAVURE_TRY(const ZonesProgram laid, lay_out_zones(loaded));
+  GRAVURE_TRY(std::optional<TextOutput> plot, draw(options, loaded, laid));
+  GRAVURE_TRY(const CompiledPath made, compile_zones_program(loaded, laid, options.output));
+  if (plot) {
+    GRAVURE_CHECK(plot->commit());
   }
-  GRAVURE_TRY(const std::unique_ptr<ZoneMotion> motion, ZoneMotion::create(plan, loaded.request.machine, request));
-  GRAVURE_TRY(const CompiledPath made, compile_motion(options, loaded, *motion));
-  if (!options.plot.empty()) {
-    GRAVURE_CHECK(write_whole(options.plot, zones_to_svg(plan, loaded.job.contours)));
-  }
-  report(options, loaded, plan, *motion, made, command);
+  report(options, loaded, laid.zones, *laid.motion, made, command);
   return kDone;
 }
 

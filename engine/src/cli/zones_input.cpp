@@ -7,6 +7,7 @@
 
 #include "gravure/core/file_output.hpp"
 #include "gravure/formats/contours.hpp"
+#include "gravure/formats/image_files.hpp"
 #include "gravure/formats/machine_file.hpp"
 #include "gravure/zones/plan_zones.hpp"
 #include "verb.hpp"
@@ -16,18 +17,51 @@ namespace {
 
 constexpr std::size_t kMostTransformBytes = std::size_t{1} << 20U;
 
+/// What `gravure register` says of a transform beside its numbers.
+Result<void> check_registration(const Json& document, const std::string& path, const std::string& contours) {
+  const auto is = [&document](const char* key, bool value) {
+    return document.contains(key) && document[key].is_boolean() && document[key] == value;
+  };
+  if (document.contains("contours_out_sha256")) {
+    GRAVURE_TRY(const std::string hash, sha256_file(contours));
+    if (document["contours_out_sha256"] == hash) {
+      return Error{ErrorCode::bad_argument,
+                   fmt::format("{}: {} are the contours that this registration has laid on the scan already, and would "
+                               "be moved twice: give the contours of the CAD, or leave the transform out",
+                               path, contours)};
+    }
+  }
+  for (const auto& [key, wrong] : {std::pair("converged", false), std::pair("degenerate", true),
+                                   std::pair("scale_refused", true), std::pair("ambiguous", true)}) {
+    if (is(key, wrong)) {
+      warn(fmt::format("{}: \"{}\" is {}: the registration is not sure of this pose; check it before you mark", path,
+                       key, wrong));
+    }
+  }
+  return {};
+}
+
 /// The 4 x 4 numbers of "transform": a similarity.
-Result<Eigen::Matrix4d> read_transform(const std::string& path) {
+Result<Eigen::Matrix4d> read_transform(const std::string& path, const std::string& contours) {
   GRAVURE_TRY(const std::string text, read_file(path, kMostTransformBytes));
   const auto refuse = [&path](const std::string& problem) {
     return Error{ErrorCode::bad_file,
                  path + ": " + problem + "; give transform as four rows of four numbers, the last 0, 0, 0, 1"};
   };
-  const Json document = Json::parse(text, nullptr, false);
+  int times = 0;
+  const auto count = [&times](int depth, Json::parse_event_t event, const Json& parsed) {
+    times += event == Json::parse_event_t::key && depth == 1 && parsed == "transform" ? 1 : 0;
+    return true;
+  };
+  const Json document = Json::parse(text, count, false);
+  if (times > 1) {
+    return refuse("has \"transform\" " + std::to_string(times) + " times");
+  }
   if (!document.is_object() || !document.contains("transform") || !document["transform"].is_array() ||
       document["transform"].size() != 4) {
     return refuse("has no \"transform\" of four rows");
   }
+  GRAVURE_CHECK(check_registration(document, path, contours));
   Eigen::Matrix4d matrix;
   for (int row = 0; row < 4; ++row) {
     const Json& numbers = document["transform"][static_cast<std::size_t>(row)];
@@ -65,18 +99,20 @@ void apply(const Eigen::Matrix4d& transform, Contour& contour) {
 
 }  // namespace
 
-Result<std::vector<Contour>> load_contours(const std::string& path, const std::string& transform) {
+Result<std::vector<Contour>> load_contours(const std::string& path) {
   GRAVURE_TRY(formats::ContourFile file, formats::read_contours(path));
   for (const std::string& note : file.notes) {
     warn(path + ": " + note);
   }
-  if (!transform.empty()) {
-    GRAVURE_TRY(const Eigen::Matrix4d matrix, read_transform(transform));
-    for (Contour& contour : file.contours) {
-      apply(matrix, contour);
-    }
-  }
   return std::move(file.contours);
+}
+
+Result<void> move_contours(const std::string& transform, const std::string& file, std::vector<Contour>& contours) {
+  GRAVURE_TRY(const Eigen::Matrix4d matrix, read_transform(transform, file));
+  for (Contour& contour : contours) {
+    apply(matrix, contour);
+  }
+  return {};
 }
 
 Result<kinematics::Machine> load_zones_machine(const std::string& path, std::optional<double> field_mm) {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "gravure/core/file_output.hpp"
 #include "gravure/core/path_motion.hpp"
 #include "gravure/kinematics/machines.hpp"
+#include "placed_error.hpp"
 #include "texture_options.hpp"
 #include "zones_input.hpp"
 
@@ -58,7 +58,8 @@ Result<std::string> signs_of(const Machine& machine) {
 
 Result<ZonesOptics> optics_of(const ZonesJob& job) {
   const ZonesBeam& beam = *job.beam;
-  const double pulses_per_s = static_cast<double>(job.laser.seed_hz) / static_cast<double>(job.laser.pulse_divider);
+  const double pulses_per_s =
+      static_cast<double>(job.job.laser.seed_hz) / static_cast<double>(job.job.laser.pulse_divider);
   // Without a power the fluence is not asked for; the spot does not depend on it.
   const double power_w = beam.average_power_w ? to_double(*beam.average_power_w) : 1;
   ZonesOptics optics;
@@ -81,47 +82,62 @@ Result<ZonesOptics> optics_of(const ZonesJob& job) {
 }
 
 /// Pulses come at most one a slot.
-Result<void> check_speed(const ZonesJob& job, const std::string& path) {
+Result<void> check_speed(const ZonesJob& job) {
   constexpr int kUmInMm = 1000;
-  const Rational most = job.pulse_pitch_um * ratio(job.laser.seed_hz, job.laser.pulse_divider) / Rational(kUmInMm);
+  const Rational most =
+      job.pulse_pitch_um * ratio(job.job.laser.seed_hz, job.job.laser.pulse_divider) / Rational(kUmInMm);
   if (job.mark_speed_mm_s > most) {
-    return Error{ErrorCode::out_of_range,
-                 fmt::format("{}: [marking] mark_speed_mm_s = {}: {} um apart, pulses of seed_hz / pulse_divider reach "
-                             "{:.6g} mm/s",
-                             path, to_decimal_string(job.mark_speed_mm_s), to_decimal_string(job.pulse_pitch_um),
-                             to_double(most))};
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("[marking] mark_speed_mm_s = {}: {} um apart, pulses of seed_hz / pulse_divider reach "
+                    "{:.6g} mm/s at most: lower it, or raise pulse_pitch_um",
+                    to_decimal_string(job.mark_speed_mm_s), to_decimal_string(job.pulse_pitch_um), to_double(most))};
   }
   return {};
+}
+
+Result<std::vector<Contour>> load_placed_contours(const ZonesJob& job, const ZonesFiles& files) {
+  GRAVURE_TRY(std::vector<Contour> contours, placed(job.job, "contours.file", load_contours(files.contours)));
+  if (!files.transform.empty()) {
+    GRAVURE_CHECK(placed(job.job, "contours.transform", move_contours(files.transform, files.contours, contours)));
+  }
+  return contours;
 }
 
 }  // namespace
 
 Result<LoadedZonesJob> load_zones_job(const std::string& path) {
-  LoadedZonesJob loaded;
-  GRAVURE_TRY(loaded.text, read_file(path, kMaxZonesJobBytes));
-  GRAVURE_TRY(loaded.job, parse_zones_job(loaded.text, path));
-  const ZonesJob& job = loaded.job;
-  GRAVURE_CHECK(check_speed(job, path));
+  GRAVURE_TRY(ZonesJob job, read_zones_job(path));
   const auto beside = [&](const std::string& file) {
     return file.empty() ? file : (std::filesystem::path(path).parent_path() / file).string();
   };
-  loaded.inputs = {path, beside(job.contours), beside(job.transform), beside(job.machine)};
+  ZonesFiles files{beside(job.contours), beside(job.transform), beside(job.machine)};
+  return load_zones_job(std::move(job), std::move(files));
+}
+
+Result<LoadedZonesJob> load_zones_job(ZonesJob given, ZonesFiles files) {
+  LoadedZonesJob loaded;
+  loaded.job = std::move(given);
+  loaded.files = std::move(files);
+  const ZonesJob& job = loaded.job;
+  GRAVURE_CHECK(placed(job.job, "marking.mark_speed_mm_s", check_speed(job)));
   zones::ZonePlanRequest& request = loaded.request;
-  GRAVURE_TRY(request.contours, load_contours(loaded.inputs[1], loaded.inputs[2]));
+  GRAVURE_TRY(request.contours, load_placed_contours(job, loaded.files));
   const std::optional<double> field_mm = job.field_mm ? std::optional(to_double(*job.field_mm)) : std::nullopt;
-  GRAVURE_TRY(request.machine, load_zones_machine(loaded.inputs[3], field_mm));
-  GRAVURE_TRY(loaded.machine, signs_of(request.machine));
+  GRAVURE_TRY(request.machine, placed(job.job, "machine.file", load_zones_machine(loaded.files.machine, field_mm)));
+  GRAVURE_TRY(loaded.machine, placed(job.job, "machine.file", signs_of(request.machine)));
   request.method = job.by_kmeans ? zones::Method::kmeans : zones::Method::cover;
   request.kmeans = {job.clusters, job.normalised, job.seed};
   request.max_incidence_rad = to_double(job.max_incidence_deg) / kDegreesPerRad;
   if (job.beam) {
-    GRAVURE_TRY(loaded.optics, optics_of(job));
+    GRAVURE_TRY(loaded.optics, placed(job.job, "beam.threshold_j_cm2", optics_of(job)));
   }
   if (job.layer_mm) {
     request.max_layer_mm = to_double(*job.layer_mm);
   } else {
     GRAVURE_TRY(const double range_mm,
-                zones::processing_range_mm(loaded.optics->spot, to_double(*job.beam->fluence_share)));
+                placed(job.job, "beam.fluence_share",
+                       zones::processing_range_mm(loaded.optics->spot, to_double(*job.beam->fluence_share))));
     request.max_layer_mm = 2 * range_mm;
   }
   return loaded;

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "gravure/core/plan.hpp"
 #include "gravure/formats/zones_job.hpp"
@@ -17,11 +16,17 @@ struct ZonesOptics {
   double over_threshold = 0;  ///< 0: no threshold is known
 };
 
+/// Where the files that a job names lie; "" for those it does not.
+struct ZonesFiles {
+  std::string contours;
+  std::string transform;
+  std::string machine;
+};
+
 /// A zones job with the files it names.
 struct LoadedZonesJob {
   ZonesJob job;
-  std::string text;
-  std::vector<std::string> inputs;  ///< all files read: no output may be one of them
+  ZonesFiles files;
   zones::ZonePlanRequest request;
   std::optional<ZonesOptics> optics;
   std::string machine;  ///< PathPlan::machine
@@ -30,7 +35,9 @@ struct LoadedZonesJob {
 /// Reads a job, its contours where the part is, and its machine. Fails as parse_zones_job(), load_contours() and
 /// read_machine() do; bad_argument for a machine whose axes are not those a path program knows (both signs of
 /// docs/kinematics.md, telecentric), out_of_range where the beam ablates nothing or the mark speed needs more pulses
-/// than the laser gives.
+/// than the laser gives. Every error begins with a place in the job.
 Result<LoadedZonesJob> load_zones_job(const std::string& path);
+/// The same of a job that has been read, and whose files lie elsewhere now.
+Result<LoadedZonesJob> load_zones_job(ZonesJob job, ZonesFiles files);
 
 }  // namespace gravure::cli

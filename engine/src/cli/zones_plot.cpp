@@ -98,10 +98,10 @@ std::string zones_to_svg(const zones::ZonePlan& plan, const std::string& title) 
   for (std::size_t z = 0; z < plan.zones.size(); ++z) {
     const zones::PlannedZone& zone = plan.zones[z];
     svg += fmt::format(
-        "<text x=\"{}\" y=\"{}\" fill=\"{}\">zone {}: {} contours, incidence {:.2f} deg, {} layers of {:.3f} "
-        "mm</text>\n",
-        kPlotMargin, line, colour_of(z), z, zone.zone.pieces.size(), zone.zone.max_incidence_rad * kDegreesPerRad,
-        zone.layers.size(), zone.layer_thickness_mm);
+        "<text x=\"{}\" y=\"{}\" fill=\"{}\">zone {}: {} contours, incidence {:.2f} deg, {}</text>\n", kPlotMargin,
+        line, colour_of(z), z, zone.zone.pieces.size(), zone.zone.max_incidence_rad * kDegreesPerRad,
+        zone.layer_thickness_mm > 0 ? fmt::format("{} layers of {:.3f} mm", zone.layers.size(), zone.layer_thickness_mm)
+                                    : "flat");
     line += kRow;
   }
   return svg + "</svg>\n";

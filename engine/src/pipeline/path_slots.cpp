@@ -40,8 +40,8 @@ Result<void> PathSlots::place(const PathWindow& window, std::span<std::byte> bit
   const auto begin = static_cast<double>(window[1].along_counts);
   const auto end = static_cast<double>(window[2].along_counts);
   const double periods_per_s = to_double(plan_.line.rate_hz);
-  spacing_.max_speed_mm_s = std::max(spacing_.max_speed_mm_s, (end - begin) / counts_per_mm_ * periods_per_s);
   const CoveredPath covered(window);
+  spacing_.max_speed_mm_s = std::max(spacing_.max_speed_mm_s, covered.max_speed() / counts_per_mm_ * periods_per_s);
   const auto slots = static_cast<double>(plan_.line.slots);
   while (next_ < pulses_.count) {
     const double belongs = (static_cast<double>(next_) + 0.5) * pitch_counts_;

@@ -15,6 +15,26 @@ namespace {
 /// With more directions, circles through pairs of a sample of them alone are looked at.
 constexpr std::size_t kMostDirections = 150;
 constexpr std::size_t kMostWindowEdges = 64;
+/// With more pieces, a sample of them alone bounds the number of zones: what no fewer zones hold of it, no fewer hold
+/// of all.
+constexpr std::size_t kMostBounded = 1500;
+
+/// So many sets of so many pieces are compared with each other in some seconds.
+std::size_t most_sets(std::size_t pieces) {
+  constexpr double kSteps = 2.5e12;  // pairs times pieces
+  return static_cast<std::size_t>(std::sqrt(kSteps / static_cast<double>(pieces)));
+}
+
+/// Circles through pairs of directions, two of each, are at most most_sets().
+std::size_t most_directions(std::size_t pieces) {
+  return std::min(kMostDirections, static_cast<std::size_t>(std::sqrt(static_cast<double>(most_sets(pieces)))));
+}
+
+/// Left and lower edges of windows for each of `sets` that do not fit the field.
+std::size_t most_edges(std::size_t pieces, std::size_t sets) {
+  const auto edges = std::sqrt(static_cast<double>(most_sets(pieces)) / static_cast<double>(sets));
+  return std::clamp<std::size_t>(static_cast<std::size_t>(edges), 2, kMostWindowEdges);
+}
 
 /// Pieces that share a direction from which all of them can be marked.
 struct Candidates {
@@ -45,13 +65,14 @@ std::vector<Vector3> sample_directions(const std::vector<Piece>& pieces, bool& i
   };
   std::sort(all.begin(), all.end(), less);
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  is_complete = all.size() <= kMostDirections;
+  const std::size_t most = most_directions(pieces.size());
+  is_complete = all.size() <= most;
   if (is_complete) {
     return all;
   }
   std::vector<Vector3> sample{all[0]};
   std::vector<double> cosine(all.size(), -2);
-  while (sample.size() < kMostDirections) {
+  while (sample.size() < most) {
     std::size_t farthest = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
       cosine[i] = std::max(cosine[i], all[i].dot(sample.back()));
@@ -114,11 +135,11 @@ Candidates candidates_by_direction(const std::vector<Piece>& pieces, double limi
   return found;
 }
 
-/// Numbers of a list that is not too long.
-std::vector<double> edges_of(std::vector<double> values) {
+/// Numbers of a list, about `most` of them.
+std::vector<double> edges_of(std::vector<double> values, std::size_t most) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
-  const std::size_t step = (values.size() + kMostWindowEdges - 1) / kMostWindowEdges;
+  const std::size_t step = (values.size() + most - 1) / most;
   std::vector<double> kept;
   for (std::size_t i = 0; i < values.size(); i += step) {
     kept.push_back(values[i]);
@@ -128,7 +149,7 @@ std::vector<double> edges_of(std::vector<double> values) {
 
 /// What of a set a field sees that stands with its left and lower edge at those of pieces.
 void add_windows(const std::vector<Piece>& pieces, const std::vector<std::size_t>& members, const Vector3& axis,
-                 double field_mm, Candidates& found) {
+                 double field_mm, std::size_t most, Candidates& found) {
   const LocalFrame frame = frame_of(axis);
   std::vector<Extent> boxes;
   std::vector<double> lefts;
@@ -139,8 +160,8 @@ void add_windows(const std::vector<Piece>& pieces, const std::vector<std::size_t
     bottoms.push_back(boxes.back().least.y());
   }
   const double side = field_mm + kFieldSlackMm;
-  for (const double left : edges_of(lefts)) {
-    for (const double bottom : edges_of(bottoms)) {
+  for (const double left : edges_of(lefts, most)) {
+    for (const double bottom : edges_of(bottoms, most)) {
       Bits seen(pieces.size());
       for (std::size_t m = 0; m < members.size(); ++m) {
         const Extent& box = boxes[m];
@@ -161,6 +182,7 @@ void add_windows(const std::vector<Piece>& pieces, const std::vector<std::size_t
 Candidates fit_field(const std::vector<Piece>& pieces, const Candidates& by_direction, const ZoneLimits& limits) {
   Candidates found;
   found.is_complete = by_direction.is_complete;
+  const std::size_t edges = most_edges(pieces.size(), by_direction.sets.size());
   for (std::size_t s = 0; s < by_direction.sets.size(); ++s) {
     const std::vector<std::size_t> members = by_direction.sets[s].members();
     const std::optional<Zone> whole = zone_of(pieces, members, limits, by_direction.axes[s]);
@@ -169,7 +191,7 @@ Candidates fit_field(const std::vector<Piece>& pieces, const Candidates& by_dire
       found.axes.push_back(whole->direction);
     } else {
       found.is_complete = false;
-      add_windows(pieces, members, by_direction.axes[s], limits.field_mm, found);
+      add_windows(pieces, members, by_direction.axes[s], limits.field_mm, edges, found);
     }
   }
   if (!found.is_complete) {  // each piece alone fits from its own direction
@@ -211,7 +233,8 @@ std::vector<Zone> assign(const std::vector<Piece>& pieces, const Candidates& can
   return zones;
 }
 
-std::size_t bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits, const Candidates& by_direction) {
+/// Largest number of pieces found no two of which can share a zone.
+std::size_t packing_of(const std::vector<Piece>& pieces, const ZoneLimits& limits) {
   std::vector<Bits> neighbours(pieces.size(), Bits(pieces.size()));
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     neighbours[i].set(i);
@@ -222,7 +245,15 @@ std::size_t bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits,
       }
     }
   }
-  std::size_t bound = largest_packing(neighbours);
+  return largest_packing(neighbours);
+}
+
+std::size_t bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits, const Candidates& by_direction) {
+  std::vector<Piece> sample;
+  for (std::size_t i = 0; pieces.size() > kMostBounded && i < kMostBounded; ++i) {
+    sample.push_back(pieces[i * pieces.size() / kMostBounded]);
+  }
+  std::size_t bound = packing_of(sample.empty() ? pieces : sample, limits);
   if (by_direction.is_complete) {
     const SetCover cover = smallest_cover(by_direction.sets, pieces.size());
     bound = cover.is_proved ? std::max(bound, cover.chosen.size()) : bound;

@@ -53,6 +53,7 @@ class Blocks {
   struct Nearest {
     std::uint32_t centre = 0;
     double squared = std::numeric_limits<double>::infinity();
+    double next_squared = std::numeric_limits<double>::infinity();  ///< of the nearest other centre
   };
   Nearest nearest(const double* point) const noexcept {
     Nearest best;
@@ -67,7 +68,9 @@ class Blocks {
       }
       for (std::size_t c = 0; c < kBlock; ++c) {
         if (squared[c] < best.squared) {
-          best = {static_cast<std::uint32_t>(b * kBlock + c), squared[c]};
+          best = {static_cast<std::uint32_t>(b * kBlock + c), squared[c], best.squared};
+        } else {
+          best.next_squared = std::min(best.next_squared, squared[c]);
         }
       }
     }
@@ -143,18 +146,28 @@ std::vector<double> first_centres(const Data& data, const KMeansRequest& request
 struct State {
   std::vector<double> centres;
   std::vector<std::uint32_t> labels;
-  std::vector<double> squared;  ///< distance of each point from the centre of its label
+  /// Of each point: no further from the centre of its label than the one, no nearer to any other than the other
+  /// (Hamerly 2010). While they are apart, the label stays, and nothing needs to be measured.
+  std::vector<double> farthest_own;
+  std::vector<double> nearest_other;
 };
+
+/// Bounds differ by more than all roundings of measured distances: labels are those of measuring every distance.
+constexpr double kRounding = 1e-9;
 
 /// Each point to its nearest centre; did a label change?
 bool assign(const Data& data, Blocks& blocks, State& state) {
   blocks.set(state.centres);
   bool changed = false;
   for (std::size_t i = 0; i < data.count; ++i) {
+    if (state.farthest_own[i] * (1 + kRounding) < state.nearest_other[i]) {
+      continue;
+    }
     const Blocks::Nearest nearest = blocks.nearest(data.at(i));
     changed = changed || nearest.centre != state.labels[i];
     state.labels[i] = nearest.centre;
-    state.squared[i] = nearest.squared;
+    state.farthest_own[i] = std::sqrt(nearest.squared);
+    state.nearest_other[i] = std::sqrt(nearest.next_squared);
   }
   return changed;
 }
@@ -167,28 +180,57 @@ std::vector<std::size_t> sizes_of(const State& state, std::size_t clusters) {
   return sizes;
 }
 
+/// Squared distance of each point from the centre of its label.
+std::vector<double> squared_distances(const Data& data, const State& state) {
+  std::vector<double> squared(data.count);
+  for (std::size_t i = 0; i < data.count; ++i) {
+    squared[i] =
+        squared_distance(data.at(i), state.centres.data() + state.labels[i] * data.dimensions, data.dimensions);
+  }
+  return squared;
+}
+
 /// The point farthest from its centre, of clusters that have others, becomes the only member of a cluster without any.
-void fill_empty(State& state, std::size_t clusters) {
+void fill_empty(const Data& data, State& state, std::size_t clusters) {
   std::vector<std::size_t> sizes = sizes_of(state, clusters);
+  if (std::find(sizes.begin(), sizes.end(), std::size_t{0}) == sizes.end()) {
+    return;
+  }
+  std::vector<double> squared = squared_distances(data, state);
   for (std::uint32_t c = 0; c < clusters; ++c) {
     if (sizes[c] > 0) {
       continue;
     }
     std::size_t farthest = state.labels.size();
     for (std::size_t i = 0; i < state.labels.size(); ++i) {
-      if (sizes[state.labels[i]] > 1 &&
-          (farthest == state.labels.size() || state.squared[i] > state.squared[farthest])) {
+      if (sizes[state.labels[i]] > 1 && (farthest == state.labels.size() || squared[i] > squared[farthest])) {
         farthest = i;
       }
     }
     --sizes[state.labels[farthest]];
     sizes[c] = 1;
     state.labels[farthest] = c;
-    state.squared[farthest] = 0;
+    state.nearest_other[farthest] = 0;  // to be measured again
+    squared[farthest] = 0;
   }
 }
 
+/// Centres moved: the bounds widen by as much.
+void widen_bounds(const Data& data, const std::vector<double>& before, State& state) {
+  std::vector<double> ways;
+  for (std::size_t at = 0; at < before.size(); at += data.dimensions) {
+    ways.push_back(std::sqrt(squared_distance(before.data() + at, state.centres.data() + at, data.dimensions)));
+  }
+  const double longest = *std::max_element(ways.begin(), ways.end());
+  for (std::size_t i = 0; i < data.count; ++i) {
+    state.farthest_own[i] += ways[state.labels[i]];
+    state.nearest_other[i] -= longest;
+  }
+}
+
+/// Each to the mean of its members.
 void move_centres(const Data& data, State& state) {
+  const std::vector<double> before = state.centres;
   const std::size_t clusters = state.centres.size() / data.dimensions;
   const std::vector<std::size_t> sizes = sizes_of(state, clusters);
   std::fill(state.centres.begin(), state.centres.end(), 0.0);
@@ -203,6 +245,7 @@ void move_centres(const Data& data, State& state) {
       state.centres[c * data.dimensions + d] /= static_cast<double>(sizes[c]);
     }
   }
+  widen_bounds(data, before, state);
 }
 
 Clustering cluster_once(const Data& data, const KMeansRequest& request, std::uint64_t start) {
@@ -210,11 +253,12 @@ Clustering cluster_once(const Data& data, const KMeansRequest& request, std::uin
   state.centres = first_centres(data, request, start);
   const std::size_t clusters = state.centres.size() / data.dimensions;
   state.labels.assign(data.count, kNone);
-  state.squared.assign(data.count, 0);
+  state.farthest_own.assign(data.count, 0);
+  state.nearest_other.assign(data.count, 0);
   Blocks blocks(data);
   int rounds = 0;
   while (rounds < kMostRounds && assign(data, blocks, state)) {
-    fill_empty(state, clusters);
+    fill_empty(data, state, clusters);
     move_centres(data, state);
     ++rounds;
   }

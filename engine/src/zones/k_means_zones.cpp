@@ -11,6 +11,7 @@ namespace gravure::zones {
 namespace {
 
 constexpr std::size_t kDimensions = 6;
+constexpr std::size_t kMostLooks = 30'000'000;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// Middle of a piece by its length: how densely its points lie plays no part.
@@ -102,7 +103,15 @@ Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits
   const std::size_t bound = lower_bound_of(pieces, limits);
   const std::size_t first = options.clusters > 0 ? options.clusters : bound;
   const std::size_t last = options.clusters > 0 ? options.clusters : pieces.size();
+  std::size_t looks = 0;  // at a piece from a centre, as far as that is known beforehand
   for (std::size_t clusters = first;; ++clusters) {
+    looks += clusters * pieces.size();
+    if (options.clusters == 0 && looks > kMostLooks) {
+      return Error{ErrorCode::out_of_range,
+                   fmt::format("k: up to {} clusters of {} contours and parts of them do not meet the limits, and more "
+                               "are not tried: give k, or wider limits",
+                               clusters - 1, pieces.size())};
+    }
     GRAVURE_TRY(ZoneSet set, cluster(pieces, features, clusters, options.seed));
     add_violations(limits, set);
     if (set.violations.empty() || clusters >= last) {

@@ -45,10 +45,14 @@ Result<LayerStack> layer_stack(double least_mm, double top_mm, double most_thick
     return Error{ErrorCode::out_of_range,
                  fmt::format("layer thickness = {} mm: must be greater than 0", most_thickness_mm)};
   }
+  if (!std::isfinite(height) || height < 0) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("heights from {} to {} mm: must be numbers, the lower one first", least_mm, top_mm)};
+  }
   constexpr double kRounding = 1e-12;
   constexpr double kMostLayers = 1e6;
   const double layers = std::max(1.0, std::ceil(height / most_thickness_mm * (1 - kRounding)));
-  if (!(height >= 0) || !(layers <= kMostLayers)) {
+  if (layers > kMostLayers) {
     return Error{ErrorCode::out_of_range, fmt::format("{} layers of {} mm in a height of {} mm: must be at most {}",
                                                       layers, most_thickness_mm, height, kMostLayers)};
   }

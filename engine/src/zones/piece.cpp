@@ -10,7 +10,7 @@
 namespace gravure::zones {
 namespace {
 
-constexpr std::size_t kMostPieces = 1'000'000;
+constexpr std::size_t kMostPieces = 10'000;
 
 Vector3 vector_of(const std::array<double, 3>& values) {
   return {values[0], values[1], values[2]};
@@ -64,7 +64,10 @@ Result<void> cut_contour(const Contour& contour, std::size_t number, double fiel
     if (pieces.size() >= kMostPieces) {
       return Error{
           ErrorCode::out_of_range,
-          fmt::format("field_mm = {}: the contours would be cut into more than {} parts", field_mm, kMostPieces)};
+          fmt::format(
+              "field_mm = {:.6g}: the contours would be cut into more than {} parts: give a larger field, or part "
+              "of the contours",
+              field_mm, kMostPieces)};
     }
     const Vector3 cut = from + share * (to - from);
     if (cut != from) {
@@ -89,9 +92,15 @@ double length_mm(const std::vector<Vector3>& points) noexcept {
 }
 
 Result<std::vector<Piece>> cut_to_field(const std::vector<Contour>& contours, double field_mm) {
-  constexpr double kLeastField = 1e-3;
+  constexpr double kLeastField = 5e-4;  // 1 um, less the room for the swing of the mirrors
   if (!(field_mm >= kLeastField) || !std::isfinite(field_mm)) {
     return Error{ErrorCode::out_of_range, fmt::format("field_mm = {}: must be {} or more", field_mm, kLeastField)};
+  }
+  if (contours.size() > kMostPieces) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("{} contours: zones are made of at most {} at a time: take several "
+                             "jobs, one for each side of the part",
+                             contours.size(), kMostPieces)};
   }
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < contours.size(); ++i) {

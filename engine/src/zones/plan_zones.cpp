@@ -13,6 +13,32 @@ namespace gravure::zones {
 namespace {
 
 constexpr std::size_t kMostViolations = 20;
+/// The times between all of them are in memory at once.
+constexpr std::size_t kMostZones = 500;
+
+/// Between the parts of the plan: the number of those that are done.
+Result<void> go_on(const ZonePlanRequest& request, std::int64_t done) {
+  constexpr std::int64_t kParts = 4;
+  if (request.cancel != nullptr && request.cancel->cancelled()) {
+    return Error{ErrorCode::cancelled, "stopped before the zones were planned"};
+  }
+  if (request.progress != nullptr) {
+    request.progress->update(done, kParts);
+  }
+  return {};
+}
+
+Result<ZoneSet> zones_of(const std::vector<Piece>& pieces, const ZonePlanRequest& request, const ZoneLimits& limits) {
+  GRAVURE_TRY(ZoneSet set, request.method == Method::cover ? cover_zones(pieces, limits)
+                                                           : k_means_zones(pieces, limits, request.kmeans));
+  if (set.zones.size() > kMostZones) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("max_incidence_deg = {:.6g}: {} zones: at most {} are put in order: allow more incidence, "
+                             "or give a larger field or part of the contours",
+                             request.max_incidence_rad * 180 / std::numbers::pi, set.zones.size(), kMostZones)};
+  }
+  return set;
+}
 
 /// Frame, layers and strokes of a zone; the joints come with the tour.
 Result<PlannedZone> lay_out(const std::vector<Piece>& pieces, const Zone& zone, double max_layer_mm) {
@@ -94,8 +120,9 @@ Result<ZonePlan> plan_zones(const ZonePlanRequest& request) {
   const double field_mm = request.machine.head.field_mm;
   const ZoneLimits limits{request.max_incidence_rad, field_mm - 2 * std::min(kSwing_mm, field_mm / 100)};
   GRAVURE_TRY(plan.pieces, cut_to_field(request.contours, limits.field_mm));
-  GRAVURE_TRY(const ZoneSet set, request.method == Method::cover ? cover_zones(plan.pieces, limits)
-                                                                 : k_means_zones(plan.pieces, limits, request.kmeans));
+  GRAVURE_CHECK(go_on(request, 0));
+  GRAVURE_TRY(const ZoneSet set, zones_of(plan.pieces, request, limits));
+  GRAVURE_CHECK(go_on(request, 1));
   plan.lower_bound = set.lower_bound;
   plan.clusters = set.clusters;
   plan.inertia = set.inertia;
@@ -107,8 +134,10 @@ Result<ZonePlan> plan_zones(const ZonePlanRequest& request) {
     stops.push_back(stops_of(planned));
     zones.push_back(std::move(planned));
   }
+  GRAVURE_CHECK(go_on(request, 2));
   const JointPositions start(request.machine.joints.size(), 0);
   GRAVURE_TRY(const Tour tour, plan_tour(request.machine, stops, start));
+  GRAVURE_CHECK(go_on(request, 3));
   plan.tour_time_s = tour.time_s;
   plan.naive_time_s = tour.naive_time_s;
   plan.is_tour_proved = tour.is_proved;
@@ -134,8 +163,8 @@ Machine example_machine() {
   head.field_mm = 60;
   head.resolution_bits = 20;
   head.max_speed_mm_s = 2000;
-  head.max_acceleration_mm_s2 = 1e7;
-  head.max_jerk_mm_s3 = 1e11;
+  head.max_acceleration_mm_s2 = 20'000;
+  head.max_jerk_mm_s3 = 1'000'000;
   Machine machine = kinematics::xyzac_machine(kinematics::XyzacSigns::texturing, Vector3::Zero(), head);
   for (kinematics::Joint& joint : machine.joints) {
     const bool is_linear = joint.kind == kinematics::JointKind::prismatic;

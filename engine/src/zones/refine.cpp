@@ -16,6 +16,9 @@ double squared_angles(const std::vector<Piece>& pieces, const Zone& zone) noexce
   return sum;
 }
 
+/// Pieces looked at for moves, with repetition: what is left of thousands stays where the cover has put it.
+constexpr std::size_t kMostLooks = 20'000'000;
+
 class Refiner {
  public:
   Refiner(const std::vector<Piece>& pieces, const ZoneLimits& limits, std::vector<Zone>& zones)
@@ -59,9 +62,10 @@ class Refiner {
     grown.insert(std::upper_bound(grown.begin(), grown.end(), piece), piece);
     std::vector<std::size_t> left = zones_[from].pieces;
     left.erase(std::find(left.begin(), left.end(), piece));
-    if (left.empty()) {
+    if (left.empty() || grown.size() + left.size() > looks_left_) {
       return false;
     }
+    looks_left_ -= grown.size() + left.size();
     const std::optional<Zone> new_to = zone_of(pieces_, grown, limits_, zones_[to].direction);
     const std::optional<Zone> new_from = zone_of(pieces_, left, limits_, zones_[from].direction);
     if (!new_to || !new_from ||
@@ -79,6 +83,7 @@ class Refiner {
   const ZoneLimits& limits_;
   std::vector<Zone>& zones_;
   std::vector<std::size_t> home_;
+  std::size_t looks_left_ = kMostLooks;
 };
 
 }  // namespace

@@ -104,16 +104,22 @@ std::vector<std::size_t> nearest_neighbour(const TourTimes& times) {
   return order;
 }
 
+/// Of zones in the orders that are tried: a hundred zones are improved as far as it goes, a thousand for some seconds.
+constexpr std::size_t kMostSteps = 100'000'000;
+
 /// Turns round each stretch of the order, and moves each stretch of up to three zones to each other place, while one of
 /// these gains.
 class Improver {
  public:
   Improver(const TourTimes& times, std::vector<std::size_t> order)
-      : times_(times), order_(std::move(order)), best_(best_ways(times, order_)) {}
+      : times_(times),
+        order_(std::move(order)),
+        best_(best_ways(times, order_)),
+        tries_left_(kMostSteps / order_.size()) {}
 
   TourOrder run() {
     constexpr int kMostSweeps = 50;
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kMostSweeps && tries_left_ > 0; ++sweep) {
       const bool turned = turn_stretches();
       if (!move_stretches() && !turned) {
         break;
@@ -124,6 +130,7 @@ class Improver {
 
  private:
   bool accept(const std::vector<std::size_t>& order) {
+    --tries_left_;
     TourOrder other = best_ways(times_, order);
     if (!(other.time_s < best_.time_s - kGain_s)) {
       return false;
@@ -136,7 +143,7 @@ class Improver {
   bool turn_stretches() {
     bool gained = false;
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      for (std::size_t j = i + 1; j < order_.size(); ++j) {
+      for (std::size_t j = i + 1; j < order_.size() && tries_left_ > 0; ++j) {
         std::vector<std::size_t> order = order_;
         std::reverse(order.begin() + static_cast<std::ptrdiff_t>(i),
                      order.begin() + static_cast<std::ptrdiff_t>(j) + 1);
@@ -151,7 +158,7 @@ class Improver {
     constexpr std::size_t kLongest = 3;
     for (std::size_t length = 1; length <= std::min(kLongest, order_.size() - 1); ++length) {
       for (std::size_t from = 0; from + length <= order_.size(); ++from) {
-        for (std::size_t to = 0; to + length <= order_.size(); ++to) {
+        for (std::size_t to = 0; to + length <= order_.size() && tries_left_ > 0; ++to) {
           std::vector<std::size_t> order = order_;
           const auto begin = order.begin() + static_cast<std::ptrdiff_t>(from);
           const std::vector<std::size_t> stretch(begin, begin + static_cast<std::ptrdiff_t>(length));
@@ -167,6 +174,7 @@ class Improver {
   const TourTimes& times_;
   std::vector<std::size_t> order_;
   TourOrder best_;
+  std::size_t tries_left_;
 };
 
 }  // namespace

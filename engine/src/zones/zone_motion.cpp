@@ -41,14 +41,20 @@ motion::JerkRequest request_of(double stroke, const Limits& limits) {
   return {{stroke, limits.speed, limits.acceleration, limits.acceleration, 0, 0}, limits.jerk, limits.jerk};
 }
 
-/// The axes follow the cubic through four set-points, whose speed may be beyond that of the motion by 0.1587 jerk
-/// period^2 (Peano's kernel); its acceleration and jerk are means of those of the motion.
-void leave_room(Limits& limits, double period_s) {
-  constexpr double kBeyond = 0.1587;
-  const double squared = kBeyond * period_s * period_s;
-  limits.jerk = std::min(limits.jerk, limits.speed / 2 / squared);
+/// What moves from instant to instant by a cubic of its set-points may be faster than the motion itself by `beyond`
+/// jerk period^2: so much room is left, at most `most` of the speed; the jerk is lowered where that would be more.
+void leave_room(Limits& limits, double beyond, double most, double period_s) {
+  const double squared = beyond * period_s * period_s;
+  limits.jerk = std::min(limits.jerk, limits.speed * most / squared);
   limits.speed -= limits.jerk * squared;
 }
+
+/// The axes follow the cubic through four set-points: Peano's kernel. Its acceleration and jerk are means of those of
+/// the motion.
+constexpr double kBeyondOfAxes = 0.1587;
+/// The path covered follows the monotone cubic of core/path_expand.hpp: 1/12, where the motion turns at its greatest
+/// speed in the middle of a period with all the jerk there is.
+constexpr double kBeyondOfPath = 0.0834;
 
 /// Corners that a stroke turns at, its ends included.
 std::vector<Vector3> turning_points(const std::vector<Vector3>& points) {
@@ -75,7 +81,7 @@ struct ZoneMotion::Data {
   std::array<Limits, kAxes> limits{};
   Limits mark;
   double period_s = 0;
-  std::size_t most_moves = 0;
+  ZoneMotionRequest request;
   std::vector<Leg> legs;
   std::vector<JointPositions> stops;
   std::int64_t instants = 1;
@@ -85,6 +91,7 @@ struct ZoneMotion::Data {
   std::vector<PathTarget> targets;
 
   Result<void> find_axes();
+  Error too_long(const Leg& leg, double periods) const;
   Result<void> add_leg(Leg leg, double& time_s);
   Result<void> go_to(const Axes& to, double& time_s);
   Result<Axes> axes_at(std::size_t stop, const Vector3& part_mm) const;
@@ -113,14 +120,34 @@ Result<void> ZoneMotion::Data::find_axes() {
   return {};
 }
 
+/// With this leg it would be more than most_periods.
+Error ZoneMotion::Data::too_long(const Leg& leg, double periods) const {
+  const std::string most = fmt::format("a program has at most {} periods of servo_us, {:.3g} h", request.most_periods,
+                                       static_cast<double>(request.most_periods) * period_s / 3600);
+  const double leg_s = periods * period_s;
+  if (times.mark_s + (leg.is_mark() ? leg_s : 0) > times.stage_s + times.jump_s + (leg.is_mark() ? 0 : leg_s)) {
+    return {ErrorCode::out_of_range,
+            fmt::format("mark_speed_mm_s = {:.6g}: after {:.3f} mm of the contours, {}: mark faster, or make servo_us "
+                        "longer",
+                        request.mark_speed_mm_s, along_mm, most)};
+  }
+  return {ErrorCode::out_of_range,
+          fmt::format("servo_us = {:.6g}: moves in the dark take too long, {}: make it longer, or give the machine "
+                      "faster axes",
+                      period_s * 1e6, most)};
+}
+
 Result<void> ZoneMotion::Data::add_leg(Leg leg, double& time_s) {
-  if (legs.size() >= most_moves) {
+  if (legs.size() >= request.most_moves) {
     return Error{ErrorCode::out_of_range,
-                 fmt::format("more than {} moves: thin the points of the contours", most_moves)};
+                 fmt::format("more than {} moves: thin the points of the contours", request.most_moves)};
   }
   leg.first = instants - 1;
-  const double periods = std::ceil(leg.profiles[0].access_time_s() / period_s);
-  leg.periods = static_cast<std::int64_t>(std::max(1.0, periods));
+  const double periods = std::max(1.0, std::ceil(leg.profiles[0].access_time_s() / period_s));
+  if (!(static_cast<double>(instants) + periods <= static_cast<double>(request.most_periods))) {
+    return too_long(leg, periods);
+  }
+  leg.periods = static_cast<std::int64_t>(periods);
   instants += leg.periods;
   time_s += static_cast<double>(leg.periods) * period_s;
   legs.push_back(std::move(leg));
@@ -228,17 +255,18 @@ Result<std::unique_ptr<ZoneMotion>> ZoneMotion::create(const ZonePlan& plan, con
   auto data = std::make_unique<Data>();
   data->machine = machine;
   data->period_s = request.servo_period_s;
-  data->most_moves = request.most_moves;
+  data->request = request;
   GRAVURE_CHECK(data->find_axes());
   for (const std::size_t galvo : {kStages, kStages + 1}) {
     data->limits[galvo].speed = std::min(data->limits[galvo].speed, request.jump_speed_mm_s);
   }
   for (Limits& limits : data->limits) {
-    leave_room(limits, request.servo_period_s);
+    leave_room(limits, kBeyondOfAxes, 0.5, request.servo_period_s);
   }
   // U and V are no faster than the spot on the part: the beam sees the way shortened.
   data->mark = data->limits[kStages];
   data->mark.speed = std::min(data->mark.speed, request.mark_speed_mm_s);
+  leave_room(data->mark, kBeyondOfPath, 0.05, request.servo_period_s);
   for (const PlannedZone& zone : plan.zones) {
     for (const PlannedLayer& layer : zone.layers) {
       GRAVURE_CHECK(data->add_layer(zone, layer, plan.pieces));

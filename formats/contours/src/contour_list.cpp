@@ -38,7 +38,7 @@ Error ContourList::bad(const std::string& problem, ErrorCode code) const {
 
 Result<void> ContourList::set_id(double value) {
   if (!(std::abs(value) <= static_cast<double>(kMaxContourId)) || std::trunc(value) != value) {
-    return bad(fmt::format("id = {}: must be an integer from -2^53 to 2^53", value), ErrorCode::out_of_range);
+    return bad(fmt::format("id = {}: must be an integer from -(2^53 - 1) to 2^53 - 1", value), ErrorCode::out_of_range);
   }
   current_.id = static_cast<std::int64_t>(value);
   has_id_ = true;

@@ -9,6 +9,7 @@
 
 #include "gravure/formats/freeform_job.hpp"
 #include "gravure/formats/job_file.hpp"
+#include "gravure/formats/zones_job.hpp"
 
 namespace gravure {
 namespace {
@@ -60,6 +61,11 @@ Result<Job> read_job(const std::string& path) {
 Result<FreeformJob> read_freeform_job(const std::string& path) {
   GRAVURE_TRY(const std::string text, read_job_text(path));
   return parse_freeform_job(text, path);
+}
+
+Result<ZonesJob> read_zones_job(const std::string& path) {
+  GRAVURE_TRY(const std::string text, read_job_text(path));
+  return parse_zones_job(text, path);
 }
 
 std::optional<Mode> mode_of_job(const std::string& path) {

@@ -1,36 +1,18 @@
 // Any bytes are a job or an Error; what either promises holds.
 
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
 #include "gravure/formats/freeform_job.hpp"
 #include "gravure/formats/job_file.hpp"
+#include "text_reader.hpp"
 
 namespace {
 
-constexpr std::string_view kPath = "fuzz.toml";
-
-void require(bool holds) {
-  if (!holds) {
-    std::abort();
-  }
-}
-
-void check_error(const gravure::Error& error) {
-  require(error.code == gravure::ErrorCode::bad_argument || error.code == gravure::ErrorCode::out_of_range ||
-          error.code == gravure::ErrorCode::bad_file);
-  require(error.message.substr(0, kPath.size()) == kPath);
-  std::size_t line_start = 0;
-  for (std::size_t at = 0; at < error.message.size(); ++at) {
-    if (error.message[at] == '\n') {
-      line_start = at + 1;
-      require(error.message.compare(line_start, kPath.size(), kPath) == 0);
-    }
-    require(error.message[at] == '\n' || static_cast<unsigned char>(error.message[at]) >= 0x20U);
-  }
-}
+using gravure::fuzz::check_error;
+using gravure::fuzz::kPath;
+using gravure::fuzz::require;
 
 void check_job(const gravure::Job& job, std::string_view text) {
   require(job.text == text && job.path == kPath);
@@ -55,7 +37,7 @@ void check_freeform(const gravure::FreeformJob& job, std::string_view text) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string_view text = gravure::fuzz::text_of(data, size);
   const gravure::Result<gravure::Job> result = gravure::parse_job(text, std::string(kPath));
   if (result) {
     check_job(result.value(), text);

@@ -86,7 +86,9 @@ TEST(Contours, RefusesWithThePlace) {
   EXPECT_EQ(error_of(one("1", "[[0,0,0],[2e6,0,0]]", "[0,0,1]")),
             "c.json: contours[0] (id 1): points[1]: x = 2000000: must be from -1000000 to 1000000 mm");
   EXPECT_EQ(error_of(one("1.5", points, "[0,0,1]")),
-            "c.json: contours[0]: id = 1.5: must be an integer from -2^53 to 2^53");
+            "c.json: contours[0]: id = 1.5: must be an integer from -(2^53 - 1) to 2^53 - 1");
+  EXPECT_NE(error_of(one("9007199254740993", points, "[0,0,1]")).find("must be an integer from -(2^53 - 1)"),
+            std::string::npos);  // as a double it is 2^53
   EXPECT_EQ(error_of(one("\"a\"", points, "[0,0,1]")), "c.json: contours[0]: \"id\" is a string: must be an integer");
   EXPECT_EQ(error_of(R"({"contours": [{"id": 1, "points": [[0,0,0],[1,0,0]]}]})"),
             "c.json: contours[0] (id 1): the key \"direction\" is missing");

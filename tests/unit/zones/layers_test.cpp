@@ -45,6 +45,9 @@ TEST(LayerStack, RefusesWhatIsNoThickness) {
   EXPECT_EQ(layer_stack(0, 1, 0).error().code, ErrorCode::out_of_range);
   EXPECT_EQ(layer_stack(0, 1, std::nan("")).error().code, ErrorCode::out_of_range);
   EXPECT_EQ(layer_stack(0, 1e6, 1e-3).error().code, ErrorCode::out_of_range);
+  const auto nowhere = layer_stack(0, std::nan(""), 1);
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.error().message, "heights from 0 to nan mm: must be numbers, the lower one first");
 }
 
 TEST(CutLayers, LosesNothingAndDoublesNothing) {

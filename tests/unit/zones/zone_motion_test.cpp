@@ -25,6 +25,9 @@ ZonePlanRequest small_core() {
   request.max_incidence_rad = 5 * std::numbers::pi / 180;
   request.max_layer_mm = 0.15;
   request.machine = example_machine();
+  // So hard a head that what lies between two set-points counts.
+  request.machine.head.max_acceleration_mm_s2 = 1e7;
+  request.machine.head.max_jerk_mm_s3 = 1e11;
   return request;
 }
 
@@ -120,6 +123,79 @@ TEST(ZoneMotion, KeepsTheSpeedsOfItsCubicsWithinTheirLimits) {
     EXPECT_LE(fastest / kPeriod_s, most * (1 + 1e-9));
     EXPECT_GE(fastest / kPeriod_s, 0.8 * most);
   }
+}
+
+/// Speed of the spot along the path at its fastest: of the monotone cubics through what the program stores.
+double fastest_spot_mm_s(const ZoneMotion& motion) {
+  std::vector<PathInstant> instants(static_cast<std::size_t>(motion.instants()));
+  EXPECT_TRUE(motion.read(0, instants));
+  constexpr double kCountsPerMm = 1e9;
+  double fastest = 0;
+  for (std::size_t i = 0; i + 1 < instants.size(); ++i) {
+    PathWindow window{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t at = std::min(i + k, instants.size()) - (i + k > 0 ? 1 : 0);
+      window[k].along_counts = std::llround(instants[at].along_mm * kCountsPerMm);
+    }
+    fastest = std::max(fastest, CoveredPath(window).max_speed());
+  }
+  return fastest / kCountsPerMm / kPeriod_s;
+}
+
+TEST(ZoneMotion, KeepsTheSpotWithinTheMarkSpeedBetweenSetPoints) {
+  const ZonePlanRequest request = small_core();
+  const ZonePlan plan = plan_zones(request).value();
+  constexpr double kRounding_mm_s = 2e-9 / kPeriod_s;  // of the path covered, to 1 pm
+  for (const double speed_mm_s : {5.0, 60.0, 200.0, 900.0}) {
+    const auto made = ZoneMotion::create(plan, request.machine, {kPeriod_s, speed_mm_s}).value();
+    const double fastest = fastest_spot_mm_s(*made);
+    EXPECT_LE(fastest, speed_mm_s + kRounding_mm_s);
+    EXPECT_GE(fastest, 0.94 * std::min(speed_mm_s, 200.0));
+  }
+}
+
+/// Where a stroke ends, the cubic between set-points swings beyond its end; cuts leave room for that in the field.
+TEST(ZoneMotion, StaysInTheFieldBetweenSetPointsWhereContoursAreCut) {
+  ZonePlanRequest request = small_core();
+  request.contours.resize(1);
+  request.contours[0].points_mm = {{-100, 0, 0}, {100, 0, 0}};
+  request.contours[0].direction = {0, 0, 1};
+  const ZonePlan plan = plan_zones(request).value();
+  ASSERT_GT(plan.pieces.size(), 3U);
+  const double half_field_mm = request.machine.head.field_mm / 2;
+  double farthest = 0;
+  double farthest_set_point = 0;
+  for (const double speed_mm_s : {300.0, 700.0, 1500.0}) {
+    const auto made = ZoneMotion::create(plan, request.machine, {kPeriod_s, speed_mm_s}).value();
+    std::vector<PathInstant> instants(static_cast<std::size_t>(made->instants()));
+    ASSERT_TRUE(made->read(0, instants));
+    for (std::size_t i = 3; i < instants.size(); ++i) {
+      const auto at = [&](std::size_t back) { return instants[i - back].axes[5]; };
+      farthest_set_point = std::max(farthest_set_point, std::abs(at(0)));
+      for (int place = 0; place <= 10; ++place) {
+        farthest = std::max(farthest, std::abs(cubic_between({at(3), at(2), at(1), at(0)}, place / 10.0)));
+      }
+    }
+  }
+  EXPECT_LE(farthest, half_field_mm);
+  EXPECT_GT(farthest, farthest_set_point + 1e-5);  // without room it would be outside
+  EXPECT_NEAR(farthest_set_point, half_field_mm - 0.002, 1e-6);
+}
+
+TEST(ZoneMotion, RefusesAMotionTooLongBeforeItIsReckonedOut) {
+  const ZonePlanRequest request = small_core();
+  const ZonePlan plan = plan_zones(request).value();
+  const auto slow = ZoneMotion::create(plan, request.machine, {kPeriod_s, 1e-6});
+  ASSERT_FALSE(slow);
+  EXPECT_EQ(slow.error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(slow.error().message.rfind("mark_speed_mm_s = 1e-06: after ", 0), 0U) << slow.error().message;
+  EXPECT_NE(slow.error().message.find("a program has at most 268435456 periods of servo_us, 3.73 h"),
+            std::string::npos);
+  ZoneMotionRequest dark{kPeriod_s, 200};
+  dark.most_periods = 100;
+  const auto far = ZoneMotion::create(plan, request.machine, dark);
+  ASSERT_FALSE(far);
+  EXPECT_EQ(far.error().message.rfind("servo_us = 50: moves in the dark take too long", 0), 0U) << far.error().message;
 }
 
 TEST(ZoneMotion, ReadsTheSameInPieces) {

@@ -71,6 +71,16 @@ class CoveredPath {
     const double rest = 1 - share;
     return share * share * (3 - 2 * share) * covered_ + share * rest * (rest * begin_slope_ - share * end_slope_);
   }
+  /// The greatest speed in the period, counts a period: that of an end, or between them where the speed bends down.
+  double max_speed() const noexcept {
+    const double ends = std::max(begin_slope_, end_slope_);
+    const double bend = 2 * covered_ - begin_slope_ - end_slope_;
+    const double rise = 3 * covered_ - 2 * begin_slope_ - end_slope_;
+    if (!(rise > 0 && rise < 3 * bend)) {  // the top of the parabola is not inside
+      return ends;
+    }
+    return std::max(ends, begin_slope_ + rise * rise / (3 * bend));
+  }
   /// The share of the period after which `counts` are covered, 0 <= counts <= covered(), covered() above 0.
   double share_of(double counts) const noexcept {
     double low = 0;

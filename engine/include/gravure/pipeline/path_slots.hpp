@@ -18,7 +18,7 @@ struct PathSpacing {
   double max_error_um = 0;  ///< along the path, from where the pulse belongs
   double rms_error_um = 0;
   double half_slot_um = 0;    ///< half a slot at the greatest speed: no error is larger
-  double max_speed_mm_s = 0;  ///< of the spot along the path
+  double max_speed_mm_s = 0;  ///< of the spot along the path, between set-points as well (core/path_expand.hpp)
   double least_slots = 0;     ///< fewest slots from a pulse to the next as the path asks for: never below 1
 };
 

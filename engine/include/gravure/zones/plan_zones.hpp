@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gravure/core/contour.hpp"
+#include "gravure/core/progress.hpp"
 #include "gravure/zones/cover.hpp"
 #include "gravure/zones/layers.hpp"
 #include "gravure/zones/local_frame.hpp"
@@ -21,6 +22,8 @@ struct ZonePlanRequest {
   double max_incidence_rad = 0;
   double max_layer_mm = 0;
   Machine machine;  ///< its head's field_mm is the scan field
+  CancelToken* cancel = nullptr;
+  Progress* progress = nullptr;  ///< of the parts of the plan
 };
 
 /// One layer of a zone: where the stages stand and what the galvo marks.
@@ -52,13 +55,14 @@ struct ZonePlan {
 };
 
 /// From contours on the part to zones, layers and stage positions. Every point of every stroke is put through the
-/// machine: violations name what lies outside the scan field or more than half a layer from focus. Errors as the
-/// parts'.
+/// machine: violations name what lies outside the scan field or more than half a layer from focus. out_of_range for
+/// more than 10,000 contours or parts of them and for more than 500 zones, cancelled, and errors as the parts'.
 Result<ZonePlan> plan_zones(const ZonePlanRequest& request);
 
 /// An X-Y-Z-A-C machine as in [A] with the A and C axes meeting at the origin of the part, for plans without a machine
-/// file: 100 mm/s, 1 m/s^2, 20 m/s^3; 90 deg/s, 360 deg/s^2, 3600 deg/s^3, A from -120 to 120 deg; a field of 60 mm;
-/// galvo 2 m/s, 10 km/s^2, 1e8 m/s^3.
+/// file: 100 mm/s, 1 m/s^2, 20 m/s^3; 90 deg/s, 360 deg/s^2, 3600 deg/s^3, A from -120 to 120 deg; a field of 60 mm. U
+/// and V as in [A] table 1, whose jerk is read as m/s^2 per ms: 20 m/s^2, 1000 m/s^3; their speed, 2 m/s, decides
+/// nothing there and is what such heads reach.
 Machine example_machine();
 
 }  // namespace gravure::zones

@@ -14,8 +14,9 @@ namespace gravure::zones {
 struct ZoneMotionRequest {
   double servo_period_s = 0;   ///< > 0
   double mark_speed_mm_s = 0;  ///< > 0: of the spot along a contour, at most
-  std::size_t most_moves = 5'000'000;
+  std::size_t most_moves = 1'000'000;
   double jump_speed_mm_s = std::numeric_limits<double>::infinity();  ///< > 0: of U and V in the dark, at most
+  std::int64_t most_periods = std::int64_t{1} << 28U;                ///< of the servo: 3.7 h of 50 us
 };
 
 /// What happens when, in the order of a plan.
@@ -34,12 +35,13 @@ struct ZoneTimes {
 /// passed), so that the spot never leaves the contour. Every move is a synchronised jerk-limited profile from rest to
 /// rest under the limits of joints and galvo (engine/motion), begins at an instant of the servo and ends at or before
 /// one. Speeds stay so far below their limits that those of the cubics between set-points (core/path_expand.hpp) keep
-/// to them.
+/// to them, that of the spot along the path as well (but for the rounding of the path covered to 1 pm a set-point).
 class ZoneMotion final : public PathMotion {
  public:
   /// The machine must have the joints X, Y, Z, A and C and no others, and limits of speed, acceleration and jerk for
-  /// each and for the galvo: bad_argument names what is missing. out_of_range for settings that are not positive or
-  /// more moves than most_moves, and as kinematics::field_of(). Keeps what it needs of plan and machine.
+  /// each and for the galvo: bad_argument names what is missing. out_of_range for settings that are not positive, and
+  /// before it is reckoned out for more moves than most_moves or periods than most_periods; as kinematics::field_of().
+  /// Keeps what it needs of plan and machine.
   static Result<std::unique_ptr<ZoneMotion>> create(const ZonePlan& plan, const Machine& machine,
                                                     const ZoneMotionRequest& request);
   ~ZoneMotion() override;

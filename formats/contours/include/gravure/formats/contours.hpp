@@ -18,7 +18,7 @@ inline constexpr std::size_t kMaxContours = 1'000'000;
 /// Largest coordinate.
 inline constexpr double kMaxContourMm = 1e6;
 /// Largest number of a contour: JSON's numbers are exact so far.
-inline constexpr std::int64_t kMaxContourId = std::int64_t{1} << 53U;
+inline constexpr std::int64_t kMaxContourId = (std::int64_t{1} << 53U) - 1;
 
 /// The contours of a file, one or more.
 struct ContourFile {

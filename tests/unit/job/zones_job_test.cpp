@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "gravure/formats/job_file.hpp"
 #include "markdown_table.hpp"
 
 namespace gravure {
@@ -62,7 +63,7 @@ TEST(ZonesJob, EveryKeyArrivesWhereItBelongs) {
   const auto read = parse_zones_job(kEveryKey, "j.toml");
   ASSERT_TRUE(read) << read.error().message;
   const ZonesJob& job = read.value();
-  EXPECT_EQ(job.title, "core");
+  EXPECT_EQ(job.job.title, "core");
   EXPECT_EQ(job.contours, "c.json");
   EXPECT_EQ(job.transform, "t.json");
   EXPECT_TRUE(job.by_kmeans);
@@ -79,9 +80,9 @@ TEST(ZonesJob, EveryKeyArrivesWhereItBelongs) {
   EXPECT_EQ(job.beam->fluence_share, ratio(97, 100));
   EXPECT_EQ(job.beam->average_power_w, 2);
   EXPECT_EQ(job.beam->threshold_j_cm2, ratio(1, 2));
-  EXPECT_EQ(job.laser.seed_hz, 82'000'000);
-  EXPECT_EQ(job.laser.pulse_divider, 41);
-  EXPECT_EQ(job.clock_multiplier, 4);
+  EXPECT_EQ(job.job.laser.seed_hz, 82'000'000);
+  EXPECT_EQ(job.job.laser.pulse_divider, 41);
+  EXPECT_EQ(job.job.fpga.clock_multiplier, 4);
   EXPECT_EQ(job.servo_us, 25);
   EXPECT_EQ(job.pulse_pitch_um, ratio(5, 2));
   EXPECT_EQ(job.mark_speed_mm_s, 150);
@@ -95,10 +96,10 @@ TEST(ZonesJob, TakesTheDefaultsOfTheTable) {
   const auto read = parse_zones_job(kLeast, "j.toml");
   ASSERT_TRUE(read) << read.error().message;
   const ZonesJob& job = read.value();
-  EXPECT_TRUE(job.title.empty() && job.transform.empty() && job.machine.empty());
+  EXPECT_TRUE(job.job.title.empty() && job.transform.empty() && job.machine.empty());
   EXPECT_FALSE(job.by_kmeans || job.beam || job.jump_speed_mm_s || job.field_mm || job.max_landing_um);
   EXPECT_EQ(job.layer_mm, ratio(1, 10));
-  EXPECT_EQ(job.clock_multiplier, 2);
+  EXPECT_EQ(job.job.fpga.clock_multiplier, 2);
   EXPECT_EQ(job.servo_us, 50);
 }
 
@@ -120,9 +121,9 @@ TEST(ZonesJob, NamesLineAndColumnOfWhatIsWrong) {
       {"max_incidence_deg = 5", "", "j.toml:5:1: ", "[zones] max_incidence_deg is missing"},
       {"layer_mm = 0.1", "layer_mm = 0.1\nk = 3", "j.toml:8:1: ", "belongs to method = \"kmeans\""},
       {"\"zones\"", "\"rotary\"", "j.toml:2:8: ", "must be \"zones\""},
-      {"[zones]", "[zone]", "j.toml:5:1: ", "no section of a zones job; did you mean [zones]?"},
-      {"[job]", "depth = 3\n[job]", "j.toml:1:1: ", "stands outside every section"},
-      {"\"c.json\"", "\"\"", "j.toml:4:8: ", "must be a string of 1 to 4096 bytes"},
+      {"[zones]", "[zone]", "j.toml:5:1: ", "unknown section; did you mean [zones]?"},
+      {"[job]", "depth = 3\n[job]", "j.toml:1:1: ", "unknown key outside every section"},
+      {"\"c.json\"", "\"\"", "j.toml:4:8: ", "must be a string of 1 to 4095 bytes"},
       {"[laser]", "[beam]\nfocal_length_mm = 100\n[laser]", "j.toml:8:1: ", "[beam] wavelength_um is missing"},
       {"[job]", "[job", "j.toml:1:", "not TOML"},
   };
@@ -147,7 +148,7 @@ TEST(ZonesJob, RefusesTwoThicknessesAndHalfAThreshold) {
 }
 
 TEST(ZonesJob, RefusesHugeText) {
-  EXPECT_EQ(parse_zones_job(std::string(kMaxZonesJobBytes + 1, '#'), "j.toml").error().code, ErrorCode::bad_file);
+  EXPECT_EQ(parse_zones_job(std::string(kMaxJobBytes + 1, '#'), "j.toml").error().code, ErrorCode::bad_file);
 }
 
 TEST(ZonesJob, StarterIsAJobWithContoursOfLengthOneDirections) {
@@ -162,7 +163,7 @@ TEST(ZonesJob, StarterIsAJobWithContoursOfLengthOneDirections) {
 }
 
 TEST(ZonesJobDocument, HasTheReadersKeysAndNoOthers) {
-  const std::vector<ZonesJobKey> known = zones_job_keys();
+  const std::vector<JobKey> known = zones_job_keys();
   std::size_t row = 0;
   std::ifstream stream(GRAVURE_ZONES_JOB_DOC);
   ASSERT_TRUE(stream) << GRAVURE_ZONES_JOB_DOC;
@@ -173,7 +174,7 @@ TEST(ZonesJobDocument, HasTheReadersKeysAndNoOthers) {
     const std::vector<std::string> cells = test::cells_of(line);
     ASSERT_EQ(cells.size(), 7U) << line;
     ASSERT_LT(row, known.size()) << line;
-    const ZonesJobKey& key = known[row++];
+    const JobKey& key = known[row++];
     std::string fallback;
     for (const char c : key.fallback) {
       fallback += c == '`' ? "" : std::string(1, c);

@@ -11,11 +11,9 @@
 #include "gravure/core/error.hpp"
 #include "gravure/core/exact.hpp"
 #include "gravure/core/job.hpp"
+#include "gravure/formats/job_keys.hpp"
 
 namespace gravure {
-
-/// Larger jobs are refused before they are read.
-inline constexpr std::size_t kMaxZonesJobBytes = std::size_t{1} << 20U;
 
 /// The beam before its lens, and what it does to the material.
 struct ZonesBeam {
@@ -30,7 +28,7 @@ struct ZonesBeam {
 
 /// A job of mode "zones" as its file says it, docs/formats/zones_job.md. Files are named from the job's folder.
 struct ZonesJob {
-  std::string title;
+  Job job;  ///< title, mode, laser, FPGA clock, file, text and places; nothing else of it
   std::string contours;
   std::string transform;  ///< empty: contours lie where they are
   bool by_kmeans = false;
@@ -40,8 +38,6 @@ struct ZonesJob {
   Rational max_incidence_deg = 0;
   std::optional<Rational> layer_mm;  ///< either this or beam->fluence_share
   std::optional<ZonesBeam> beam;
-  LaserSettings laser;
-  std::int64_t clock_multiplier = 2;
   Rational servo_us = 50;
   Rational pulse_pitch_um = 0;
   Rational mark_speed_mm_s = 0;
@@ -51,25 +47,14 @@ struct ZonesJob {
   std::optional<Rational> max_landing_um;
 };
 
-/// The job that `text` describes; `path` is only named, in errors.
-///
-/// Every violation is one line "path:line:column: what, its value, what is allowed", each once, in file order. The code
-/// is out_of_range where every violation is a number outside its range, bad_argument otherwise; text beyond
-/// kMaxZonesJobBytes is bad_file.
+/// Reads a job of mode "zones". Fails as read_job().
+Result<ZonesJob> read_zones_job(const std::string& path);
+
+/// The job that `text` describes; `path` is only named, in errors. Violations as those of parse_job().
 Result<ZonesJob> parse_zones_job(std::string_view text, const std::string& path);
 
-/// One key of the job; the table in docs/formats/zones_job.md has the same rows.
-struct ZonesJobKey {
-  std::string section;   ///< "zones"
-  std::string key;       ///< "layer_mm"
-  std::string type;      ///< "integer", "decimal", "string", "boolean"
-  std::string unit;      ///< "mm"; empty where there is none
-  std::string range;     ///< "0.0001 to 1_000_000", or the words allowed
-  std::string fallback;  ///< the value a missing key stands for, "required", or what decides
-};
-
 /// Every key the reader knows, in the order of docs/formats/zones_job.md.
-std::vector<ZonesJobKey> zones_job_keys();
+std::vector<JobKey> zones_job_keys();
 
 /// A commented job that compiles as it is beside a file contours.json of starter_contours().
 std::string starter_zones_job();
