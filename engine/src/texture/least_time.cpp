@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "path_axes.hpp"
 
 namespace gravure::texture {
 namespace {
@@ -24,21 +26,27 @@ std::array<double, kPathAxes.size()> places_of(const SevenAxes& at) {
   return {at.x_mm, at.y_mm, at.z_mm, at.a_rad, at.c_rad, at.u_mm, at.v_mm};
 }
 
-/// How far each axis is from one end of what it does to the other.
-std::array<double, kPathAxes.size()> ranges_of(std::span<const SevenAxes> axes) {
-  std::array<double, kPathAxes.size()> least = places_of(axes.front());
-  std::array<double, kPathAxes.size()> most = least;
-  for (const SevenAxes& each : axes) {
-    const auto places = places_of(each);
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      least[k] = std::min(least[k], places[k]);
-      most[k] = std::max(most[k], places[k]);
+/// The ways of an axis from turn to turn.
+std::vector<double> ways_of(std::span<const SevenAxes> axes, std::size_t axis) {
+  constexpr double kRounding = 1e-9;  // mm or rad
+  std::vector<double> ways;
+  double from = places_of(axes.front())[axis];
+  double last = from;
+  const auto end_way = [&] {
+    if (std::abs(last - from) > kRounding) {
+      ways.push_back(std::abs(last - from));
     }
+    from = last;
+  };
+  for (const SevenAxes& each : axes) {
+    const double at = places_of(each)[axis];
+    if ((at - last) * (last - from) < 0) {
+      end_way();
+    }
+    last = at;
   }
-  for (std::size_t k = 0; k < most.size(); ++k) {
-    most[k] -= least[k];
-  }
-  return most;
+  end_way();
+  return ways;
 }
 
 std::string shown(std::size_t axis, LimitKind kind, double bound) {
@@ -50,24 +58,28 @@ std::string shown(std::size_t axis, LimitKind kind, double bound) {
                : fmt::format("{:.6g} mm/{}", bound, per);
 }
 
+constexpr double kUs = 1e6;
 constexpr const char* kAdvice = "take a faster axis, a longer servo period or a shorter path";
 
 }  // namespace
 
 Result<void> check_least_time(const PathTimingRequest& request) {
   const double most_s = static_cast<double>(kMostPeriods) * request.servo_s;
-  const auto ranges = ranges_of(request.axes);
-  for (std::size_t axis = 0; axis < ranges.size(); ++axis) {
+  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+    const std::vector<double> ways = ways_of(request.axes, axis);
+    const double share = axis < kStageAxes ? 1 : 0.5;
     for (const LimitKind kind : {LimitKind::speed, LimitKind::acceleration, LimitKind::jerk}) {
-      const double time_s = seconds(kind, ranges[axis], request.limits[axis]);
+      double time_s = 0;
+      for (const double way : ways) {
+        time_s += share * seconds(kind, way, request.limits[axis]);
+      }
       if (time_s > most_s) {
         return Error{
             ErrorCode::out_of_range,
-            fmt::format("axis {}: {} {}: its {:.6g} {} take {:.3g} s at least, that is {:.3g} servo periods of "
-                        "{:.6g} us; at most {} can be planned: {}",
+            fmt::format("axis {}: {} {}: to and fro it takes {:.3g} s at least, that is {:.3g} servo periods "
+                        "of {:.6g} us; at most {} can be planned: {}",
                         kPathAxes[axis], limit_name(kind), shown(axis, kind, bound_of(kind, request.limits[axis])),
-                        ranges[axis], axis == 3 || axis == 4 ? "rad" : "mm", time_s, time_s / request.servo_s,
-                        request.servo_s * 1e6, kMostPeriods, kAdvice)};
+                        time_s, time_s / request.servo_s, request.servo_s * kUs, kMostPeriods, kAdvice)};
       }
     }
   }
@@ -78,7 +90,7 @@ Error too_long(double periods, double servo_s) {
   return {ErrorCode::out_of_range,
           fmt::format("the motion takes {:.3g} s or more, that is {:.3g} servo periods of {:.6g} us; at most {} can be "
                       "planned: {}",
-                      periods * servo_s, periods, servo_s * 1e6, kMostPeriods, kAdvice)};
+                      periods * servo_s, periods, servo_s * kUs, kMostPeriods, kAdvice)};
 }
 
 }  // namespace gravure::texture
