@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "gravure/texture/planning_memory.hpp"
 #include "path_program.hpp"
 
 namespace gravure::cli {
@@ -24,6 +25,7 @@ Result<texture::PathMachine> path_machine_of(const FreeformJob& job) {
   const bool points = job.motion.stops.empty() ? job.texture.hilbert_order != 0 : job.motion.stops == "points";
   machine.stops = points ? texture::Stops::points : texture::Stops::corners;
   machine.servo_s = job.motion.servo_us / kUsPerS;
+  machine.corner_law = true;
   return machine;
 }
 
@@ -47,19 +49,9 @@ Result<texture::TimedSplit> timed_split(const SplitSettings& settings, const tex
   return texture::time_split(std::move(split), path, machine, cancel_token());
 }
 
-/// What planning takes at its peak: measured, with the rule that times several sigmas.
 Result<void> check_memory(std::size_t points, const Command& command) {
-  constexpr std::int64_t kBytesPerPoint = 1200;
-  constexpr std::int64_t kMiB = std::int64_t{1} << 20;
-  const std::int64_t needed_mib = static_cast<std::int64_t>(points) * kBytesPerPoint / kMiB + 1;
-  if (needed_mib > command.memory_mib) {
-    return Error{
-        ErrorCode::out_of_range,
-        fmt::format("a path of {} points: planning takes some {} MiB of memory, --memory allows {}: take fewer "
-                    "points (a lower order, longer steps, a wider pitch), or allow more",
-                    points, needed_mib, command.memory_mib)};
-  }
-  return {};
+  Result<void> checked = texture::check_planning_memory(points, command.memory_bytes());
+  return checked ? checked : Error{checked.error().code, checked.error().message + " (--memory)"};
 }
 
 /// What a sigma of one's own can do: below, the filter does nothing; above, it only takes memory.
