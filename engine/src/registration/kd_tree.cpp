@@ -3,8 +3,6 @@
 #include <flann/algorithms/dist.h>
 #include <flann/algorithms/kdtree_single_index.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace gravure::registration {
@@ -13,9 +11,11 @@ namespace {
 using Tree = flann::KDTreeSingleIndex<flann::L2_3D<double>>;
 constexpr int kLeafPoints = 16;
 
-/// FLANN asks for points nearer than worstDist(): a hair more lets equally near ones through.
+/// FLANN asks for points nearer than worstDist(): a hair more lets equally near ones through. (std::nextafter() is a
+/// call to the library.)
 double hair_more(double distance2) {
-  return std::nextafter(distance2, std::numeric_limits<double>::infinity());
+  constexpr double kHair = 1 + 2 * std::numeric_limits<double>::epsilon();
+  return distance2 * kHair + std::numeric_limits<double>::denorm_min();
 }
 
 class NearestOne final : public flann::ResultSet<double> {
@@ -53,13 +53,16 @@ class NearestFew final : public flann::ResultSet<double> {
   bool full() const override { return true; }
   void addPoint(double distance2, std::size_t index) override {
     const Neighbour candidate{static_cast<std::ptrdiff_t>(index), distance2};
-    if (found_.size() == count_) {
-      if (!nearer(candidate, found_.back())) {
-        return;
-      }
-      found_.pop_back();
+    if (found_.size() < count_) {
+      found_.push_back(candidate);
+    } else if (!nearer(candidate, found_.back())) {
+      return;
     }
-    found_.insert(std::upper_bound(found_.begin(), found_.end(), candidate, nearer), candidate);
+    std::size_t place = found_.size() - 1;
+    for (; place > 0 && nearer(candidate, found_[place - 1]); --place) {
+      found_[place] = found_[place - 1];
+    }
+    found_[place] = candidate;
     if (found_.size() == count_) {
       worst_ = hair_more(found_.back().distance2);
     }
