@@ -8,7 +8,7 @@ namespace gravure::texture {
 namespace {
 
 constexpr std::int64_t kBytesAPoint = 1000;
-constexpr std::int64_t kOnce = std::int64_t{48} << 20;  // the program itself, blocks of motion
+constexpr std::int64_t kOnce = std::int64_t{56} << 20;  // the program itself, blocks of motion
 constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 
 }  // namespace
