@@ -108,6 +108,26 @@ TEST(PulseMap, KeepsEveryPulseWhereItLandedHoweverFarTheyReach) {
   EXPECT_EQ(map.highest_mm(), 2);
 }
 
+/// The outermost cells of odd and even numbers on both sides of 0, and nothing further out afterwards.
+TEST(PulseMap, KeepsItsOutermostCellsWhenTheyGetWider) {
+  constexpr double kCell_mm = 1.0 / 1024;
+  for (const std::int64_t low : {-4, -3, -1, 0, 5}) {
+    for (const bool along_x : {true, false}) {
+      const auto at = [](std::int64_t cell) { return (static_cast<double>(cell) + 0.5) * kCell_mm; };
+      PulseMap map;
+      for (const std::int64_t cell : {low, low + PulseMap::kSide + 1}) {
+        map.take(along_x ? at(cell) : 0, along_x ? 0 : at(cell), 1);
+      }
+      EXPECT_EQ(map.cell_mm(), 2 * kCell_mm);
+      const std::vector<double> pulses = map.pulses();
+      EXPECT_EQ(std::accumulate(pulses.begin(), pulses.end(), 0.0), 2) << low;
+      EXPECT_EQ(pulses.front(), 1) << low;
+      EXPECT_EQ(pulses.back(), 1) << low;
+      EXPECT_LE(along_x ? map.left_mm() : map.bottom_mm(), at(low)) << low;
+    }
+  }
+}
+
 TEST(PulseMap, IsLookedAtWithYUpwards) {
   PulseMap map;
   map.take(0.0001, 0.0001, 0);
