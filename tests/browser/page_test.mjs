@@ -1,4 +1,4 @@
-// node page_test.mjs CHROMIUM FOLDER SHOTS: opens good.html, bad.html and path.html of FOLDER from disk.
+// node page_test.mjs CHROMIUM FOLDER SHOTS: opens good.html, bad.html, path.html and zones.html of FOLDER from disk.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -168,6 +168,22 @@ async function pathPage(context, shot) {
   await page.close();
 }
 
+/** A part marked zone by zone, within limits: nothing on its page is red. */
+async function zonesPage(context, shot) {
+  const { page, troubles } = await open(context, 'zones.html', false);
+  const data = await page.evaluate(() => gravure.data);
+  check('zones are within limits', (await page.textContent('#verdict')).includes('Within limits'));
+  check('an axis beyond its limit by no more than rounding is not red', data.axes.some((axis) => axis.jerk[0] > axis.jerk[1]) && (await page.locator('#axis-table .over').count()) === 0);
+  check('the job is told as zones', (await page.textContent('#job')).includes('one zone after the other') && (await page.textContent('#job')).includes('Contours'));
+  check('the pulses are on the part', (await colours(page, '#map-canvas')) > 1);
+  const [stage, canvas] = await Promise.all(['#map-view .stage', '#map-canvas'].map(async (part) => (await page.locator(part).boundingBox()).width));
+  check('the picture fills its frame', stage - canvas <= 2);
+  await page.screenshot({ path: join(shots, `${shot}.png`), fullPage: true });
+  assert.deepEqual(troubles, [], 'the page complained');
+  checks += 1;
+  await page.close();
+}
+
 let browser;
 try {
   for (const [name, viewport, colorScheme] of [['wide', { width: 1280, height: 800 }, 'light'], ['phone', { width: 390, height: 844 }, 'dark']]) {
@@ -175,6 +191,7 @@ try {
     await goodPage(browser, `good_${name}`);
     await badPage(browser, `bad_${name}`);
     await pathPage(browser, `path_${name}`);
+    await zonesPage(browser, `zones_${name}`);
     if (name === 'wide') {
       await plainPage(browser, 'plain_wide');
       const { page } = await open(browser, 'good.html');

@@ -48,8 +48,14 @@ std::array<AxisUse, kPathAxes.size()> PathLimits::uses() const {
     const Extremes& seen = extremes_[axis];
     const double unit = units_per_count_[axis];
     const double rate = periods_per_s_;
-    uses[axis] = {-seen[kLeast].value * unit, seen[kMost].value * unit, seen[kSpeed].value * unit * rate,
-                  seen[kAcceleration].value * unit * rate * rate, seen[kJerk].value * unit * rate * rate * rate};
+    uses[axis] = {-seen[kLeast].value * unit,
+                  seen[kMost].value * unit,
+                  seen[kSpeed].value * unit * rate,
+                  seen[kAcceleration].value * unit * rate * rate,
+                  seen[kJerk].value * unit * rate * rate * rate,
+                  2 * unit * rate,
+                  2 * unit * rate * rate,
+                  4 * unit * rate * rate * rate};
   }
   return uses;
 }
@@ -60,10 +66,6 @@ std::vector<std::string> PathLimits::violations() const {
   for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
     const PathAxisPlan& plan = plan_.path->axes[axis];
     const char* unit = turns(axis) ? "deg" : "mm";
-    // What the rounding of set-points to counts may add.
-    const auto allowance = [&](double counts, int power) {
-      return counts * units_per_count_[axis] * std::pow(periods_per_s_, power);
-    };
     const auto hold = [&](const char* what, double value, const std::optional<Rational>& limit, double rounding,
                           const char* per, Kind kind) {
       if (!limit || value <= to_double(*limit) + std::abs(to_double(*limit)) * kLimitRounding + rounding) {
@@ -78,10 +80,10 @@ std::vector<std::string> PathLimits::violations() const {
     const auto negative = plan.least ? std::optional<Rational>(-*plan.least) : std::nullopt;
     hold("position", -uses[axis].least, negative, kStill, "", kLeast);
     hold("position", uses[axis].most, plan.most, kStill, "", kMost);
-    hold("speed", uses[axis].max_speed, plan.limits.max_speed, allowance(2, 1), "/s", kSpeed);
-    hold("acceleration", uses[axis].max_acceleration, plan.limits.max_acceleration, allowance(2, 2), "/s^2",
-         kAcceleration);
-    hold("jerk", uses[axis].max_jerk, plan.limits.max_jerk, allowance(4, 3), "/s^3", kJerk);
+    hold("speed", uses[axis].max_speed, plan.limits.max_speed, uses[axis].speed_rounding, "/s", kSpeed);
+    hold("acceleration", uses[axis].max_acceleration, plan.limits.max_acceleration, uses[axis].acceleration_rounding,
+         "/s^2", kAcceleration);
+    hold("jerk", uses[axis].max_jerk, plan.limits.max_jerk, uses[axis].jerk_rounding, "/s^3", kJerk);
   }
   return found;
 }

@@ -61,10 +61,15 @@ gravure.ticks = (low, high, count) => {
   if (!(span > 0)) return [low];
   const rough = span / Math.max(1, count);
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= rough * 0.999) || 10 * power;
-  const ticks = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + step * 1e-9; ++i) ticks.push(i * step);
-  return ticks;
+  const steps = [0.2, 0.5, 1, 2, 5, 10].map((factor) => factor * power);
+  const ticksOf = (step) => {
+    const ticks = [];
+    for (let i = Math.ceil(low / step - 1e-9); i * step <= high + step * 1e-9; ++i) ticks.push(i * step);
+    return ticks;
+  };
+  let chosen = steps.findIndex((candidate) => candidate >= rough * 0.999);
+  while (chosen > 0 && ticksOf(steps[chosen]).length < 2) --chosen;  // one says where it is, not how large
+  return ticksOf(steps[chosen < 0 ? steps.length - 1 : chosen]);
 };
 
 /** Depth to colour: paper to a deep blue-green, darker is deeper in every kind of sight. */

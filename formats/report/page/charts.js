@@ -60,7 +60,7 @@ gravure.seamChart = () => {
       chart.append(svg('path', { class: 'bound', d: gravure.path([[placeX(0), placeY(0)], [placeX(end), placeY(sign * seam.bound_um_per_revolution * end)]]), stroke: 'var(--second)', 'stroke-dasharray': '5 4', fill: 'none', 'stroke-width': 1.5 }));
     }
     chart.append(svg('text', { x: frame.right - 4, y: limitTop - 5, 'text-anchor': 'end', style: 'fill: var(--bad)' }, `limit ${gravure.number(seam.limit_um)} µm`));
-    chart.append(svg('text', { x: frame.left + 8, y: placeY(-seam.limit_um) - 8, style: 'fill: var(--second)' }, `- - published bound, ${gravure.number(seam.bound_um_per_revolution, 3)} µm a ${gravure.turn()}`));
+    chart.append(svg('text', { x: frame.left + 8, y: placeY(-seam.limit_um) - 8, style: 'fill: var(--second)' }, width < 420 ? '- - published bound' : `- - published bound, ${gravure.number(seam.bound_um_per_revolution, 3)} µm a ${gravure.turn()}`));
     chart.append(svg('path', { class: 'seam', d: gravure.path(points.map(([at, um]) => [placeX(at), placeY(um)])), stroke: 'var(--accent)', fill: 'none', 'stroke-width': 2.5, 'stroke-linejoin': 'round' }));
     if (points.length < 30) for (const [at, um] of points.slice(1)) chart.append(svg('circle', { cx: placeX(at), cy: placeY(um), r: 3, fill: 'var(--accent)' }));
     marker = svg('circle', { r: 5, fill: 'var(--paper)', stroke: 'var(--accent)', 'stroke-width': 2 });

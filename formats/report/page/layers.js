@@ -171,9 +171,8 @@ gravure.layersView = () => {
     context.font = `${12 * ratio}px system-ui, sans-serif`;
     const x = rows ? Math.max(0, state.x) + 6 * ratio : state.x + share * wide + 6 * ratio;
     const y = rows ? state.y + share * high - 6 * ratio : Math.max(0, state.y) + 16 * ratio;
-    context.lineWidth = 3 * ratio;
-    context.strokeStyle = 'rgba(255, 255, 255, 0.9)';
-    context.strokeText(text, x, y);
+    context.fillStyle = 'rgba(255, 255, 255, 0.92)';
+    context.fillRect(x - 4 * ratio, y - 13 * ratio, context.measureText(text).width + 8 * ratio, 17 * ratio);
     context.fillStyle = '#a01810';
     context.fillText(text, x, y);
   };

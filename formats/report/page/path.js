@@ -22,12 +22,17 @@ gravure.jobFacts = () => {
   const { job, clock } = gravure.data;
   const { number, grouped, hertz } = gravure;
   const rows = [['Mode', job.mode]];
-  if (job.surface) rows.push(['Surface', job.surface]);
+  const zones = job.mode === 'zones';
+  gravure.at('job-lead').textContent = zones
+    ? 'What will be done: the stages bring one zone after the other under the galvo and stand still while it marks, layer by layer.'
+    : 'What will be done: five stages and the galvo follow one path on the surface, together.';
+  if (job.surface) rows.push([zones ? 'Contours' : 'Surface', job.surface]);
   if (job.texture) rows.push(['Texture', job.texture]);
+  rows.push(['Polarity', gravure.data.verdict.fired < gravure.data.verdict.pulses ? `${job.fires} fires: ${gravure.percent(gravure.data.verdict.fired / gravure.data.verdict.pulses)} of the places` : 'every place fires']);
   rows.push(['Pitch', `a pulse every ${number(job.pitch_um.value, 8)} µm of path`]);
   rows.push(['Time', `${gravure.duration(job.duration_s.value)} = ${grouped(job.ticks)} ticks, exactly`]);
   rows.push(['Clocks', `seed ${hertz(clock.seed_hz)}, FPGA ${hertz(clock.fpga_hz)}; a pulse slot is ${grouped(clock.ticks_per_slot)} ticks (${hertz(clock.pulse_hz.value)}), a servo period ${grouped(clock.slots_per_period)} slots = ${grouped(clock.ticks_per_period)} ticks`]);
-  rows.push(['Machine', `stages X Y Z A C, galvo U V, signs of ${job.signs.replace('_', ' ')}`]);
+  rows.push(['Machine', `stages X Y Z A C, galvo U V; signs of the axes as in ${job.signs.replace('_', ' ')}`]);
   for (const source of gravure.data.sources) rows.push([source.path, gravure.element('span', { class: 'mono hash' }, `SHA-256 ${source.sha256}`)]);
   gravure.at('job-facts').append(gravure.facts(rows));
 };
@@ -56,7 +61,7 @@ gravure.figureBars = () => {
     body.append(element('tr', {}, element('td', {}, figure.name), element('td', { class: 'number' }, `${number(figure.max, 6)} ${figure.unit}`), element('td', { class: 'number' }, `${number(figure.rms, 6)} ${figure.unit}`), element('td', { class: 'number' }, figure.worst_pulse === null ? '–' : gravure.grouped(figure.worst_pulse))));
   }
   const head = element('thead', {}, element('tr', {}, ...['figure', 'at most', 'rms', 'worst pulse'].map((name, i) => element('th', { scope: 'col', class: i ? 'number' : '' }, name))));
-  place.append(element('div', { class: 'scroll' }, element('table', {}, head, body)));
+  place.append(element('div', { class: 'scroll after' }, element('table', {}, head, body)));
   place.append(element('p', { class: 'small' }, 'Spacing: how far along the path a pulse fires from its place; half a slot is what the clock leaves.'));
 };
 
@@ -110,14 +115,16 @@ gravure.mapView = () => {
     });
     context.putImageData(image, 0, 0);
     low.textContent = asHeight ? `${number(map.lowest_mm, 4)} mm` : '0';
-    high.textContent = asHeight ? `${number(map.highest_mm, 4)} mm` : `${gravure.grouped(Math.round(most))} pulses in a cell of ${number(1000 * join * map.cell_mm, 4)} µm`;
+    high.textContent = asHeight ? `${number(map.highest_mm, 4)} mm` : `${gravure.grouped(Math.round(most))} ${Math.round(most) === 1 ? 'pulse' : 'pulses'} in a cell of ${number(1000 * join * map.cell_mm, 4)} µm`;
   };
   canvas.style.aspectRatio = `${cells.columns} / ${cells.rows}`;
   canvas.style.maxWidth = `${Math.min(640, (640 * cells.columns) / cells.rows)}px`;
   canvas.style.imageRendering = 'pixelated';
+  const stage = element('div', { class: 'stage map' }, canvas);
+  stage.style.width = canvas.style.maxWidth;
   canvas.style.cursor = 'default';
   select.addEventListener('change', draw);
-  place.append(element('div', { class: 'controls' }, element('label', { for: 'map-what' }, 'Colours', select)), element('div', { class: 'stage map' }, canvas), element('div', { class: 'scale' }, low, bar, high));
+  place.append(element('div', { class: 'controls' }, element('label', { for: 'map-what' }, 'Colours', select)), stage, element('div', { class: 'scale' }, low, bar, high));
   draw();
 };
 
@@ -125,14 +132,22 @@ gravure.axisTable = () => {
   const { axes } = gravure.data;
   const { element, number } = gravure;
   const body = element('tbody');
+  let some = false;
   const cell = (text, more, over) => element('td', { class: over ? 'number over' : 'number' }, text, element('small', {}, more));
   for (const axis of axes) {
-    const used = ([value, limit], unit) => cell(`${number(value, 4)} ${unit}`, limit === null ? 'no limit' : `${gravure.percent(value / limit)} of ${number(limit, 4)}`, limit !== null && value > limit * 1.000001);
+    // As `verify` judges: a limit allows for what the rounding of set-points to counts may add.
+    const used = ([value, limit, rounding], unit) => {
+      const over = limit !== null && value > limit * 1.000001 + rounding;
+      const rounded = limit !== null && !over && value > limit * 1.000001;
+      some = some || rounded;
+      return cell(`${number(value, 4)} ${unit}`, limit === null ? 'no limit' : `${gravure.percent(value / limit)} of ${number(limit, 4)}${rounded ? ' *' : ''}`, over);
+    };
     const travel = axis.least_allowed === null && axis.most_allowed === null ? 'no limit' : `of ${number(axis.least_allowed, 5)} to ${number(axis.most_allowed, 5)}`;
     body.append(element('tr', {}, element('th', { scope: 'row' }, axis.name), cell(`${number(axis.from, 5)} to ${number(axis.to, 5)} ${axis.unit}`, travel), used(axis.speed, `${axis.unit}/s`), used(axis.acceleration, `${axis.unit}/s²`), used(axis.jerk, `${axis.unit}/s³`)));
   }
   const head = element('thead', {}, element('tr', {}, ...['axis', 'travel', 'speed', 'acceleration', 'jerk'].map((name, i) => element('th', { scope: 'col', class: i ? 'number' : '' }, name))));
   gravure.at('axis-table').append(element('table', { class: 'axes' }, head, body));
+  if (some) gravure.at('axis-table').append(element('p', { class: 'small' }, '* Beyond its limit by no more than the rounding of set-points to counts makes, for which limits allow.'));
 };
 
 /** Each axis against time: the band between the least and the greatest set-point of every stretch. */
@@ -168,7 +183,7 @@ gravure.absent = () => {
     ['Seam error and A-B clocks', 'no axis is driven by the A-B signal: stages and galvo follow set-points, and there is no revolution that could fail to close.'],
     ['Error budget', 'its ten causes are those of a turning workpiece; what is known of each pulse here stands under Pulses.'],
     ['Unrolled layers and fired share', 'the pulses follow one path, not the rows of images; the picture of the surface takes their place.'],
-    ['Expected relief', 'pulses lie a pitch apart along a path and once only; nothing is laid over each other in layers.'],
+    ['Expected relief', 'pulses lie a pitch apart along a path and once only, and the job does not say what a pulse removes.'],
   ]) list.append(element('li', {}, element('b', {}, what), `: ${why}`));
   gravure.at('absent-list').append(list);
 };

@@ -51,16 +51,18 @@ Json axes_json(const report::PathReportData& data) {
       least.push_back(place(data.traces[axis].least[i]));
       most.push_back(place(data.traces[axis].most[i]));
     }
-    axes.push_back({{"name", std::string(kPathAxes[axis])},
-                    {"unit", turns ? "\u00b0" : "mm"},
-                    {"from", place(use.least)},
-                    {"to", place(use.most)},
-                    {"least_allowed", allowed(plan.least)},
-                    {"most_allowed", allowed(plan.most)},
-                    {"speed", {figure(use.max_speed), allowed(plan.limits.max_speed)}},
-                    {"acceleration", {figure(use.max_acceleration), allowed(plan.limits.max_acceleration)}},
-                    {"jerk", {figure(use.max_jerk), allowed(plan.limits.max_jerk)}},
-                    {"trace", {{"least", least}, {"most", most}}}});
+    axes.push_back(
+        {{"name", std::string(kPathAxes[axis])},
+         {"unit", turns ? "\u00b0" : "mm"},
+         {"from", place(use.least)},
+         {"to", place(use.most)},
+         {"least_allowed", allowed(plan.least)},
+         {"most_allowed", allowed(plan.most)},
+         {"speed", {figure(use.max_speed), allowed(plan.limits.max_speed), figure(use.speed_rounding)}},
+         {"acceleration",
+          {figure(use.max_acceleration), allowed(plan.limits.max_acceleration), figure(use.acceleration_rounding)}},
+         {"jerk", {figure(use.max_jerk), allowed(plan.limits.max_jerk), figure(use.jerk_rounding)}},
+         {"trace", {{"least", least}, {"most", most}}}});
   }
   return axes;
 }
@@ -103,6 +105,7 @@ Result<std::string> path_report_json(const report::PathReportData& data) {
                  {"mode", mode_name(plan.mode)},
                  {"surface", path.surface},
                  {"texture", path.texture},
+                 {"fires", data.header->fires == Fires::white ? "white" : "black"},
                  {"signs", path.machine},
                  {"pitch_um", json_of(plan.line.pixel_pitch_um)},
                  {"duration_s", json_of(plan.job.duration_s)},

@@ -27,6 +27,10 @@ struct AxisUse {
   double max_speed = 0;
   double max_acceleration = 0;
   double max_jerk = 0;
+  /// What the rounding of set-points to counts may add to these three, and a limit allows for.
+  double speed_rounding = 0;
+  double acceleration_rounding = 0;
+  double jerk_rounding = 0;
 };
 
 /// The largest of a figure over all pulses that fired.
