@@ -149,14 +149,17 @@ Result<int> run_export(const ExportArguments& options, const Command& command) {
 
 void add_export(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "export",
-                            "Set-points as frames for digital scan heads: rotary and flat jobs, each way that lines "
-                            "run once; helical jobs, the lines of one revolution in order");
+                            "Set-points for other controls: frames for digital scan heads (rotary and flat jobs, each "
+                            "way that lines run once; helical jobs, the lines of one revolution in order), or NC "
+                            "programs where all axes follow a path");
   const auto options = std::make_shared<ExportArguments>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
-  CLI::Option* frames = verb->add_option("--xy2-100", options->folder, "Folder for the frame files: new, or empty");
+  CLI::Option* frames = verb->add_option("--xy2-100", options->folder,
+                                         "Folder, new or empty, for frame files: forward.gxy2, reverse.gxy2; "
+                                         "flat: also _onwards, _backwards; helical: revolution_R.gxy2");
   CLI::Option* nc = verb->add_option("--nc", options->nc_folder,
-                                     "Programs that follow a path: folder, new or empty, for NC programs of the "
-                                     "stages, frames of the galvo and a table of all axes")
+                                     "Programs that follow a path: folder, new or empty, for stages.ngc (G-code), "
+                                     "stages.pvt (PMAC), galvo.gxy2 (frames) and axes.csv (all axes)")
                         ->excludes(frames);
   verb->add_option("--block-ms", options->block_ms, "Length of a block of the NC programs")
       ->needs(nc)

@@ -119,7 +119,7 @@ class Exporter {
       GRAVURE_TRY(const double along, places_.along_mm(i));
       table.text() += fmt::format("{:.9f}", static_cast<double>(i) * period_s_);
       for (const double place : places) {
-        table.text() += fmt::format(",{:.9f}", place);
+        table.text() += fmt::format(",{:.9f}", rounded(place, 9));
       }
       table.text() += fmt::format(",{:.9f}\n", along);
       if (!table.flush(false)) {

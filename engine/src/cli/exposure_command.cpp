@@ -116,6 +116,12 @@ Result<int> run_exposure(ExposureArguments options, const Command& command) {
   GRAVURE_CHECK(choose_program(options));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
+  if (header.plan.path) {
+    return Error{ErrorCode::bad_argument,
+                 options.program +
+                     ": follows a path: its pulses are not pixels of a picture; gravure preview shows where "
+                     "they land, gravure verify judges each"};
+  }
   GRAVURE_TRY(ExposureCount count, ExposureCount::make(header, options.revolution, options.layer));
   std::vector<std::string> inputs = emulator::state_files(options.folder);
   inputs.push_back(options.program);

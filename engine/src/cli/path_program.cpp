@@ -74,8 +74,8 @@ std::string text_of(const PathReport& report) {
   for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
     const AxisUse& use = report.axes[axis];
     text += fmt::format("{:<2}{:<4}{:>14.6f}{:>14.6f}{:>14.6g}{:>16.6g}{:>16.6g}\n", kPathAxes[axis],
-                        axis_turns(axis) ? "deg" : "mm", use.least, use.most, use.max_speed, use.max_acceleration,
-                        use.max_jerk);
+                        axis_turns(axis) ? "deg" : "mm", rounded(use.least, 6), rounded(use.most, 6), use.max_speed,
+                        use.max_acceleration, use.max_jerk);
   }
   text += "\n";
   for (const std::string& note : report.notes) {

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -10,9 +8,10 @@
 #include "gravure/core/file_output.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/job_file.hpp"
-#include "gravure/formats/png_writer.hpp"
 #include "gravure/report/report_data.hpp"
 #include "gravure/twin/unroll.hpp"
+#include "preview_canvas.hpp"
+#include "preview_path.hpp"
 #include "program_files.hpp"
 #include "report_command.hpp"
 #include "report_writer.hpp"
@@ -27,100 +26,11 @@ struct PreviewArguments {
   std::int64_t width = 1600;
 };
 
-using Colour = std::array<std::uint8_t, 3>;
-constexpr Colour kPaper = {255, 255, 255};
-constexpr Colour kSeam = {212, 53, 43};
-constexpr std::int64_t kGap = 16;
-
-/// Between stops, evenly spaced from 0 to 1.
-template <std::size_t N>
-Colour between(const std::array<Colour, N>& stops, double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(N - 1);
-  const std::size_t i = std::min(N - 2, static_cast<std::size_t>(at));
-  Colour colour = {};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double low = stops[i][k];
-    colour[k] = static_cast<std::uint8_t>(std::lround(low + (stops[i + 1][k] - low) * (at - static_cast<double>(i))));
-  }
-  return colour;
-}
-
-/// The colours of the report page: paper to a deep blue, darker is deeper; or paper to ink for fired pixels.
-Colour colour_of(double share, bool depth) {
-  constexpr std::array<Colour, 7> kDepth = {
-      {{244, 240, 228}, {214, 216, 190}, {150, 190, 172}, {78, 149, 152}, {36, 101, 126}, {20, 56, 92}, {12, 24, 52}}};
-  constexpr std::array<Colour, 2> kFired = {{{246, 245, 240}, {26, 32, 38}}};
-  return depth ? between(kDepth, share) : between(kFired, share);
-}
-
-/// Values of one part of the picture, and where it goes.
-struct Part {
-  report::Extent values;
-  report::Extent size;  ///< on the picture
-  std::int64_t top = 0;
-  std::vector<double> shares;
-};
-
-/// The size of a part in a frame of `width` by `most_rows`; a value is `aspect` times as high as wide on the workpiece.
-report::Extent size_of(const report::Extent& values, double aspect, std::int64_t width, std::int64_t most_rows) {
-  const double height = static_cast<double>(values.height) / static_cast<double>(values.width) * aspect;
-  const double rows = height * static_cast<double>(width);
-  const auto pixels = [](double wanted) { return std::max<std::int64_t>(1, std::llround(wanted)); };
-  if (rows <= static_cast<double>(most_rows)) {
-    return {width, pixels(rows)};
-  }
-  return {pixels(static_cast<double>(most_rows) / height), most_rows};  // long strips keep their shape and lose width
-}
-
-class Canvas {
- public:
-  explicit Canvas(const report::Extent& size) : size_(size) {
-    pixels_.reserve(static_cast<std::size_t>(3 * size.area()));
-    for (std::int64_t i = 0; i < size.area(); ++i) {
-      for (const std::uint8_t sample : kPaper) {
-        pixels_.push_back(static_cast<std::byte>(sample));
-      }
-    }
-  }
-  void put(std::int64_t x, std::int64_t y, const Colour& colour) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      pixels_[static_cast<std::size_t>(3 * (y * size_.width + x)) + k] = static_cast<std::byte>(colour[k]);
-    }
-  }
-  void draw(const Part& part, bool depth) {
-    for (std::int64_t y = 0; y < part.size.height; ++y) {
-      for (std::int64_t x = 0; x < part.size.width; ++x) {
-        const std::int64_t value =
-            y * part.values.height / part.size.height * part.values.width + x * part.values.width / part.size.width;
-        put(x, part.top + y, colour_of(part.shares[static_cast<std::size_t>(value)], depth));
-      }
-    }
-  }
-  /// The seam through the middle of a part, dashed.
-  void draw_seam(const Part& part, bool across) {
-    const std::int64_t length = across ? part.size.width : part.size.height;
-    for (std::int64_t i = 0; i < length; ++i) {
-      if (i / 8 % 2 == 0) {
-        across ? put(i, part.top + part.size.height / 2, kSeam) : put(part.size.width / 2, part.top + i, kSeam);
-      }
-    }
-  }
-  Result<std::string> png() const { return encode_png({size_.width, size_.height, 3, pixels_}); }
-
- private:
-  report::Extent size_;
-  std::vector<std::byte> pixels_;
-};
-
 std::vector<double> shares_of(std::vector<double> values, double most) {
   for (double& value : values) {
     value = most > 0 ? value / most : 0;
   }
   return values;
-}
-
-Json json_of(const Part& part) {
-  return {{"left", 0}, {"top", part.top}, {"width", part.size.width}, {"height", part.size.height}};
 }
 
 Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const ProgramHeader& header,
@@ -136,7 +46,7 @@ Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const
   const double aspect = to_double(header.plan.rotary.line_pitch_um) / to_double(header.plan.line.pixel_pitch_um);
   const bool rows = header.lines_along == LinesAlong::rows;
   const report::Extent wanted =
-      size_of({size.width, size.height}, rows ? aspect : 1 / aspect, options.width, 2 * options.width);
+      size_in_frame({size.width, size.height}, rows ? aspect : 1 / aspect, options.width, 2 * options.width);
   constexpr std::int64_t kMostCells = 4'000'000;  // of every worker, 8 bytes each
   pictures.most_cells = std::min(wanted.area(), kMostCells);
   pictures.most_shown_cells = pictures.most_cells;
@@ -145,8 +55,14 @@ Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const
 
 Result<int> run_preview(const PreviewArguments& options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite(options.output, {options.program}));
+  GRAVURE_CHECK(check_png_name(options.output));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();
+  if (header.plan.path) {
+    return options.layer ? Error{ErrorCode::bad_argument,
+                                 options.program + ": follows a path and has no layers; leave --layer out"}
+                         : preview_path(*program, options.output, options.width, command);
+  }
   GRAVURE_CHECK(check_drawable(header, options.program));
   GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));
   GRAVURE_TRY(const report::LayerPictures pictures, pictures_of(options, header, command));
@@ -165,15 +81,15 @@ Result<int> run_preview(const PreviewArguments& options, const Command& command)
                              cells_per(pictures.picture.width, pictures.cells.width);
   const double most = depth ? relief.deepest : 1;
   const double seam_most = depth ? relief.seam_deepest : 1;
-  Part whole{pictures.cells, size_of(pictures.cells, cell_aspect, options.width, 2 * options.width), 0,
-             shares_of(relief.cells, most)};
+  PicturePart whole{pictures.cells, size_in_frame(pictures.cells, cell_aspect, options.width, 2 * options.width), 0,
+                    shares_of(relief.cells, most)};
   const report::Extent seam_extent = pictures.seam_extent();
-  Part seam{seam_extent, size_of(seam_extent, aspect, options.width, options.width), whole.size.height + kGap,
-            shares_of(relief.seam, seam_most)};
+  PicturePart seam{seam_extent, size_in_frame(seam_extent, aspect, options.width, options.width),
+                   whole.size.height + kPictureGap, shares_of(relief.seam, seam_most)};
   const report::Extent all{std::max(whole.size.width, seam.size.width), seam.top + seam.size.height};
   Canvas canvas(all);
-  canvas.draw(whole, depth);
-  canvas.draw(seam, depth);
+  canvas.draw(whole, depth ? Ramp::depth : Ramp::fired);
+  canvas.draw(seam, depth ? Ramp::depth : Ramp::fired);
   canvas.draw_seam(seam, rows);
   GRAVURE_TRY(const std::string png, canvas.png());
   GRAVURE_CHECK(write_file(options.output, png));
@@ -184,8 +100,8 @@ Result<int> run_preview(const PreviewArguments& options, const Command& command)
                  {"height", all.height},
                  {"layer", options.layer ? Json(*options.layer) : Json(nullptr)},
                  {"fires", polarity_name(header.fires)},
-                 {"unrolled", json_of(whole)},
-                 {"seam", json_of(seam)}};
+                 {"unrolled", place_json(whole)},
+                 {"seam", place_json(seam)}};
     json["seam"]["lines_each"] = pictures.seam_place.lines_each;
     json["seam"]["first_column"] = pictures.seam_place.first_column;
     json["seam"]["columns"] = pictures.seam_place.columns;
@@ -209,10 +125,10 @@ Result<int> run_preview(const PreviewArguments& options, const Command& command)
 void add_preview(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "preview",
                             "A picture of what a program exposes: unrolled, all layers as depth or one, and the seam "
-                            "enlarged below");
+                            "enlarged below; of a path, where pulses landed, and how high");
   const auto options = std::make_shared<PreviewArguments>();
   verb->add_option("PROGRAM", options->program, "Program file (.grv)")->required();
-  verb->add_option("-o,--output", options->output, "PNG to write")->required();
+  verb->add_option("-o,--output", options->output, "PNG to write (.png)")->required();
   verb->add_option("--layer", options->layer, "Layer of the image stack, from 0; else all of them as depth")
       ->check(integer_from(0, kMostIndex));
   verb->add_option("--width", options->width, "Of the picture in pixels")

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <string_view>
 
@@ -163,12 +164,18 @@ Result<void> write_points(const std::string& file, const texture::Split& split,
     const auto& q = split.stages[i].position_mm;
     const texture::SevenAxes& at = axes[i];
     const texture::Deviation off = texture::deviation(split.targets[i], split.stages[i]);
-    output.text() += fmt::format(
-        "{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.12f},{:.12f},{:.9f},"
-        "{:.9f},{:.6f},{:.9f}",
-        i, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), at.x_mm, at.y_mm, at.z_mm, at.a_rad, at.c_rad, at.u_mm, at.v_mm,
-        off.focus_mm * kUmPerMm, off.incidence_rad * kDegreesPerRad);
-    output.text() += focus_axis ? fmt::format(",{:.9f}\n", at.w_mm) : "\n";
+    const auto add = [&output](int decimals, std::initializer_list<double> values) {
+      for (const double value : values) {
+        output.text() += fmt::format(",{:.{}f}", rounded(value, decimals), decimals);
+      }
+    };
+    output.text() += std::to_string(i);
+    add(9, {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), at.x_mm, at.y_mm, at.z_mm});
+    add(12, {at.a_rad, at.c_rad});
+    add(9, {at.u_mm, at.v_mm});
+    add(6, {off.focus_mm * kUmPerMm});
+    add(9, {off.incidence_rad * kDegreesPerRad});
+    output.text() += focus_axis ? fmt::format(",{:.9f}\n", rounded(at.w_mm, 9)) : "\n";
     if (!output.flush(false) || cancel_token().cancelled()) {
       break;
     }

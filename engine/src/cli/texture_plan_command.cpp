@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "path_program.hpp"
 #include "program_files.hpp"
 #include "texture_outcome.hpp"
 
@@ -32,10 +33,12 @@ Result<void> write_trajectory(const TexturePlanArguments& options, const PathMot
     for (std::size_t k = 0; k < block.size(); ++k) {
       const std::int64_t at = first + static_cast<std::int64_t>(k);
       if (at % options.every == 0 || at + 1 == instants) {
-        const auto& a = block[k].axes;
-        output.text() += fmt::format("{:.7f},{:.9f},{:.9f},{:.9f},{:.12f},{:.12f},{:.9f},{:.9f},{:.9f}\n",
-                                     static_cast<double>(at) * options.job.motion.servo_us / kUsPerS, a[0], a[1], a[2],
-                                     a[3], a[4], a[5] + 0.0, a[6] + 0.0, block[k].along_mm);
+        output.text() += fmt::format("{:.7f}", static_cast<double>(at) * options.job.motion.servo_us / kUsPerS);
+        for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+          const int decimals = axis_turns(axis) ? 12 : 9;
+          output.text() += fmt::format(",{:.{}f}", rounded(block[k].axes[axis], decimals), decimals);
+        }
+        output.text() += fmt::format(",{:.9f}\n", block[k].along_mm);
       }
     }
     if (!output.flush(false)) {

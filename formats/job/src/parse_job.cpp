@@ -36,6 +36,12 @@ class Reader {
     if (is_other_mode()) {
       return std::move(job_);
     }
+    if (document_.sections.empty()) {
+      violations_.add(document_.end,
+                      "nothing is said here: a job begins with [job] and its mode; gravure init --mode MODE DIR writes "
+                      "one that runs, rotary, helical, flat, freeform or zones");
+      return std::move(job_);
+    }
     mode_ = given_mode();
     for (const Section& section : document_.sections) {
       read_section(section);

@@ -34,7 +34,10 @@ Result<std::unique_ptr<RecordingLink>> RecordingLink::create(std::unique_ptr<Dev
                                                              const std::string& path) {
   File file(std::fopen(path.c_str(), "wxe"));
   if (!file) {
-    return io_error(path, errno);
+    return errno == EEXIST
+               ? Error{ErrorCode::bad_argument,
+                       path + ": is there already, and a recording is written over nothing: give a new name"}
+               : io_error(path, errno);
   }
   return std::unique_ptr<RecordingLink>(new RecordingLink(std::move(link), path, std::move(file)));
 }
