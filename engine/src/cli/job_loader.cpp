@@ -253,7 +253,12 @@ Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& o
   options.progress = &bar;
   GRAVURE_TRY(ProgramHeader header, compile(std::move(made.header), made.stack, opener, *sink, options));
   if (!request.shard && may_share_bits(header)) {  // shards are compared when they are merged
-    GRAVURE_TRY(header, share_bits_of(request.output, request.grv));
+    Result<ProgramHeader> shared = share_bits_of(request.output, request.grv);
+    if (!shared) {  // stopped before it was what it is to be: nothing is left
+      std::error_code ignored;
+      std::filesystem::remove(request.output, ignored);
+    }
+    GRAVURE_TRY(header, std::move(shared));
   }
   return CompileOutcome{std::move(header), false};
 }

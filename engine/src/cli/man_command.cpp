@@ -1,5 +1,7 @@
 #include <filesystem>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "gravure/core/file_output.hpp"
 #include "man_page.hpp"
@@ -11,15 +13,19 @@ namespace {
 namespace fs = std::filesystem;
 
 Result<int> write_pages(const TreeVerb& root, const std::string& folder, const Command& command) {
+  std::vector<std::pair<std::string, std::string>> pages;
+  for (const TreeVerb* verb : all_verbs(root)) {
+    pages.emplace_back((fs::path(folder) / (verb->full_name("-") + ".1")).string(), man_page(*verb, GRAVURE_VERSION));
+  }
+  cancel_token();  // from here on all pages are written, whatever comes
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) {
     return Error{ErrorCode::io, folder + ": cannot make the folder: " + failed.message()};
   }
   Json written = Json::array();
-  for (const TreeVerb* verb : all_verbs(root)) {
-    const std::string path = (fs::path(folder) / (verb->full_name("-") + ".1")).string();
-    GRAVURE_CHECK(write_file(path, man_page(*verb, GRAVURE_VERSION)));
+  for (const auto& [path, page] : pages) {
+    GRAVURE_CHECK(write_file(path, page));
     written.push_back(path);
   }
   if (command.json) {

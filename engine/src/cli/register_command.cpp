@@ -182,7 +182,12 @@ Result<std::vector<PlacedContour>> place_contours(const RegisterOptions& options
                                                   const formats::ContourFile& contours) {
   registration::ContourOptions around = options.around;
   around.with_scale = options.pose.with_scale && !found.scale_refused;
-  GRAVURE_TRY(auto placed, registration::refine_contours(cad, scan, found, contours.contours, around));
+  Result<std::vector<PlacedContour>> laid = [&] {
+    ProgressBar bar("contours", "contours");
+    around.progress = &bar;
+    return registration::refine_contours(cad, scan, found, contours.contours, around);
+  }();
+  GRAVURE_TRY(std::vector<PlacedContour> placed, std::move(laid));
   std::vector<Contour> there;
   std::size_t refined = 0;
   for (PlacedContour& one : placed) {
@@ -223,7 +228,13 @@ Result<int> run_register(const RegisterOptions& options, bool json) {
   GRAVURE_TRY(const formats::ContourFile contours, contours_to_move(options));
   GRAVURE_TRY(const CadModel cad, load_cad(options.cad));
   GRAVURE_TRY(const PointSet scan, load_scan(options.scan));
-  GRAVURE_TRY(const Registration found, registration::register_scan(cad, scan, options.pose));
+  Result<Registration> registered = [&] {
+    ProgressBar bar("register", "steps");
+    registration::RegistrationOptions pose = options.pose;
+    pose.progress = &bar;
+    return registration::register_scan(cad, scan, pose);
+  }();
+  GRAVURE_TRY(const Registration found, std::move(registered));
   warn_of(found);
   Json document = registration_json(found);
   std::string text = registration_text(found);

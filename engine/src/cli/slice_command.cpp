@@ -118,7 +118,8 @@ Result<int> run_slice(const SliceArguments& options, const Command& command) {
   LayerReader reader(stack, files, 0);
   GRAVURE_CHECK(reader.read_lines(0, 0, 1, line));  // ends that do not fit the map show before there is a folder
   std::error_code failed;
-  fs::create_directories(options.folder, failed);
+  cancel_token();  // before there is a folder: Ctrl-C takes it away again
+  const bool made = fs::create_directories(options.folder, failed);
   if (failed) {
     return Error{ErrorCode::io, options.folder + ": cannot make the folder: " + failed.message()};
   }
@@ -130,7 +131,12 @@ Result<int> run_slice(const SliceArguments& options, const Command& command) {
   ProgressBar bar("slice", "layers");
   for (std::int64_t first = 0; first < options.levels; first += kOpenAtOnce) {
     const std::int64_t count = std::min(kOpenAtOnce, options.levels - first);
-    GRAVURE_CHECK(slice_levels(options, stack, info, files, first, count, fired));
+    if (Result<void> sliced = slice_levels(options, stack, info, files, first, count, fired); !sliced) {
+      if (made) {
+        fs::remove(options.folder, failed);  // where nothing is in it
+      }
+      return sliced.error();
+    }
     bar.update(first + count, options.levels);
   }
   if (command.json) {

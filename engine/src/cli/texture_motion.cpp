@@ -162,9 +162,10 @@ Result<TimedTexture> time_texture(const FreeformJob& job, const Command& command
   GRAVURE_TRY(texture.machine, placed(job, "motion", path_machine_of(job)));
   GRAVURE_TRY(texture.timed,
               placed(job, "limits", timed_split(job.split, *texture.surface, texture.path, texture.machine)));
-  GRAVURE_TRY(texture.proven,
-              placed(job, "motion",
-                     texture::prove_seven_axes(texture.timed.request(texture.machine, texture.path), cancel_token())));
+  ProgressBar bar("prove", "periods");
+  texture::PathTimingRequest request = texture.timed.request(texture.machine, texture.path);
+  request.progress = &bar;
+  GRAVURE_TRY(texture.proven, placed(job, "motion", texture::prove_seven_axes(request, cancel_token())));
   return texture;
 }
 

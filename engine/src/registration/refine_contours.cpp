@@ -199,6 +199,9 @@ Result<std::vector<PlacedContour>> refine_contours(const CadModel& cad_model, co
   for (std::size_t i = 0; i < contours.size(); ++i) {
     corrections.push_back(correct(cad, placed, whole.rms_mm, contours[i], options, results[i]));
     centres.push_back(centre_and_radius(corrections.back().points).first);
+    if (options.progress != nullptr) {
+      options.progress->update(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(contours.size()));
+    }
   }
   const KdTree tree_of_contours(centres);
   std::vector<Neighbour> near;

@@ -119,7 +119,14 @@ Result<Registration> register_scan(const CadModel& cad_model, const PointSet& sc
                                    const RegistrationOptions& options) {
   GRAVURE_CHECK(check_options(options));
   GRAVURE_CHECK(check_scan(scan));
+  const auto done = [&options](int steps) {
+    if (options.progress != nullptr) {
+      options.progress->update(steps, kRegistrationSteps);
+    }
+  };
+  done(0);
   GRAVURE_TRY(const CadSurface cad, make_cad_surface(cad_model));
+  done(1);
   const std::vector<std::uint32_t> order = morton_order(vectors(scan.points_mm));
   const ScanPoints points = in_order(scan, order);
   const ScanPoints few = thinned(points, std::max<std::size_t>(1, points.points.size() / kFewPoints));
@@ -134,9 +141,12 @@ Result<Registration> register_scan(const CadModel& cad_model, const PointSet& sc
   settings.most_iterations = options.most_iterations;
   const FoundStart start = search_start(cad, points, options.start.inverse(), options.with_scale);
   result.ambiguous = start.ambiguous;
+  done(2);
   const IcpState rough = pose_of_few(cad, few, start, settings, result);
+  done(3);
   std::vector<double> residuals;
   const IcpState state = polish(cad, points, rough, settings, &residuals);
+  done(kRegistrationSteps);
   result.iterations += state.iterations - rough.iterations;
   result.scan_points = static_cast<std::int64_t>(points.points.size());
   result.residuals_mm.assign(points.points.size(), std::numeric_limits<double>::quiet_NaN());

@@ -14,6 +14,24 @@
 namespace gravure::texture {
 namespace {
 
+/// Of several proofs of one motion, one after the other: what is done never falls, and the whole grows with each.
+class ProofProgress final : public Progress {
+ public:
+  explicit ProofProgress(Progress* told) : told_(told) {}
+  void update(std::int64_t done, std::int64_t total) override {
+    whole_ = total;
+    if (told_ != nullptr) {
+      told_->update(before_ + done, before_ + total);
+    }
+  }
+  void next_proof() { before_ += whole_; }
+
+ private:
+  Progress* told_;
+  std::int64_t before_ = 0;
+  std::int64_t whole_ = 0;
+};
+
 Result<void> check_request(const PathTimingRequest& request) {
   if (request.targets.size() < 2 || request.axes.size() != request.targets.size() ||
       request.pulse_mm.size() != request.targets.size()) {
@@ -51,6 +69,7 @@ Result<ProvenPath> prove_seven_axes(const PathTimingRequest& request, const Canc
   GRAVURE_CHECK(check_request(request));
   SevenAxisPlanner planner(request);
   ProvenPath proven;
+  ProofProgress progress(request.progress);
   for (;;) {
     GRAVURE_CHECK(planner.settle(cancel));
     proven.path = planner.timed();
@@ -63,11 +82,12 @@ Result<ProvenPath> prove_seven_axes(const PathTimingRequest& request, const Canc
                                    breached = true;
                                    planner.note(breach, needs);
                                  },
-                                 kThreads));
+                                 kThreads, &progress));
     if (!breached || proven.proofs == kMostProofs) {
       return proven;
     }
     GRAVURE_CHECK(planner.lower(needs));
+    progress.next_proof();
   }
 }
 

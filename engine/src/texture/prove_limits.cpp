@@ -177,7 +177,8 @@ std::string_view source_name(LimitSource source) noexcept {
 }
 
 Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const SevenLimits& limits, double servo_s,
-                                           const CancelToken& cancel, const LimitBreach& breach, int threads) {
+                                           const CancelToken& cancel, const LimitBreach& breach, int threads,
+                                           Progress* progress) {
   std::mutex one_at_a_time;
   LimitBreach told;
   if (breach) {
@@ -193,7 +194,12 @@ Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const Seven
     Uses& mine = uses[static_cast<std::size_t>(part)];
     return for_each_block(motion, {periods * part / parts, periods * (part + 1) / parts}, cancel,
                           "stopped while limits were being checked",
-                          [&mine](std::span<const PathInstant> block, std::int64_t begin) { mine.look(block, begin); });
+                          [&](std::span<const PathInstant> block, std::int64_t begin) {
+                            mine.look(block, begin);
+                            if (part == 0 && progress != nullptr) {  // the other parts are as long
+                              progress->update(begin * parts, periods);
+                            }
+                          });
   };
   std::vector<std::future<Result<void>>> others;
   for (std::int64_t part = 1; part < parts; ++part) {

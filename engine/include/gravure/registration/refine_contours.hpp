@@ -12,10 +12,11 @@ namespace gravure::registration {
 
 struct ContourOptions {
   bool with_scale = false;
-  double crop_mm = 5;        ///< scan points so near a contour say where it lies
-  bool bend = false;         ///< also shift each point of a contour out of the surface, as the scan does around it
-  double bend_mm = 5;        ///< bending shorter than this is smoothed away
-  double weak_share = 1e-2;  ///< as of RegistrationOptions; what is weak here is kept from the pose of the whole
+  double crop_mm = 5;            ///< scan points so near a contour say where it lies
+  bool bend = false;             ///< also shift each point of a contour out of the surface, as the scan does around it
+  double bend_mm = 5;            ///< bending shorter than this is smoothed away
+  double weak_share = 1e-2;      ///< as of RegistrationOptions; what is weak here is kept from the pose of the whole
+  Progress* progress = nullptr;  ///< told after each contour
 };
 
 /// A contour brought from the CAD onto the scan.

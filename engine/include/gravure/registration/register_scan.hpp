@@ -7,6 +7,7 @@
 
 #include "gravure/core/error.hpp"
 #include "gravure/core/point_set.hpp"
+#include "gravure/core/progress.hpp"
 #include "gravure/registration/similarity.hpp"
 
 namespace gravure::registration {
@@ -20,6 +21,8 @@ struct CadModel {
   TriangleMesh mesh;
 };
 
+inline constexpr int kRegistrationSteps = 4;  ///< that progress is told of
+
 struct RegistrationOptions {
   bool with_scale = false;   ///< the scan may be larger or smaller than the CAD: tried after the rigid pose is found
   Similarity start;          ///< CAD to scan, roughly; tried beside the principal axes
@@ -28,6 +31,8 @@ struct RegistrationOptions {
   /// A direction is weak where the normal matrix says less than this share of what it says in the best one.
   double weak_share = 1e-4;
   int most_iterations = 200;
+  Progress* progress =
+      nullptr;  ///< told after each of kRegistrationSteps: surface, start, pose of a few points, of all
 };
 
 /// A motion of the CAD that the points do not hold: along or about it the pose is only as good as the start.

@@ -32,6 +32,7 @@ struct PathTimingRequest {
   bool corner_law = false;
   SevenServos servos = assumed_servos();  ///< for TimedPath::stage_lag_mm
   std::int64_t memory_bytes = 0;          ///< check_planning_memory(); 0: as much as it takes
+  Progress* progress = nullptr;           ///< told how far proofs are, in servo periods; each proof adds its own
 };
 
 /// Motion along a path within limits. It holds what it needs of the request.

@@ -42,9 +42,10 @@ using LimitBreach = std::function<void(const LimitUse&)>;
 /// (cubic_motion()): largest and smallest speed of each cubic, its acceleration at both ends, its jerk. These are the
 /// extremes of the continuous motion, so no density of looking could find more. Errors as PathMotion::read(); cancelled
 /// on request. More than one of `threads` read different parts at once, which the motion must bear; `breach` is told
-/// one at a time, in any order then.
+/// one at a time, in any order then. `progress` is told how many periods are done.
 Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const SevenLimits& limits, double servo_s,
-                                           const CancelToken& cancel, const LimitBreach& breach = {}, int threads = 1);
+                                           const CancelToken& cancel, const LimitBreach& breach = {}, int threads = 1,
+                                           Progress* progress = nullptr);
 
 /// The uses that are above what is allowed by more than a rounding: 1e-6 of it.
 std::vector<LimitUse> broken(std::span<const LimitUse> uses);
