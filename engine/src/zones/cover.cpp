@@ -57,6 +57,7 @@ struct Candidates {
 /// The different directions; where there are too many, ones far from each other.
 std::vector<Vector3> sample_directions(const std::vector<Piece>& pieces, bool& is_complete) {
   std::vector<Vector3> all;
+  all.reserve(pieces.size());
   for (const Piece& piece : pieces) {
     all.push_back(piece.direction);
   }
