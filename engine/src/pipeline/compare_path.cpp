@@ -12,9 +12,9 @@
 namespace gravure {
 namespace {
 
-constexpr std::int64_t kBlock = 4096;     // rows read at a time
-constexpr double kSameLength = 1e-9;      // mm or rad
-constexpr double kSameDirection = 1e-11;  // of a unit vector
+constexpr std::int64_t kRowsAtOnce = 4096;  // rows read at a time
+constexpr double kSameLength = 1e-9;        // mm or rad
+constexpr double kSameDirection = 1e-11;    // of a unit vector
 
 /// How many differ, and the first of them.
 struct Difference {
@@ -54,8 +54,8 @@ class PathComparison {
     }
     Difference differing;
     std::vector<PathTarget> stored;
-    for (std::size_t first = 0; first < wanted.size(); first += kBlock) {
-      stored.resize(std::min<std::size_t>(kBlock, wanted.size() - first));
+    for (std::size_t first = 0; first < wanted.size(); first += kRowsAtOnce) {
+      stored.resize(std::min<std::size_t>(kRowsAtOnce, wanted.size() - first));
       GRAVURE_CHECK(program_.read_targets(static_cast<std::int64_t>(first), stored));
       for (std::size_t i = 0; i < stored.size(); ++i) {
         if (!is_same(stored[i], wanted[first + i])) {
@@ -81,8 +81,8 @@ class PathComparison {
     Difference differing;
     std::vector<PathSetPoint> stored;
     std::vector<PathInstant> wanted;
-    for (std::int64_t first = 0; first < count; first += kBlock) {
-      const auto size = static_cast<std::size_t>(std::min(kBlock, count - first));
+    for (std::int64_t first = 0; first < count; first += kRowsAtOnce) {
+      const auto size = static_cast<std::size_t>(std::min(kRowsAtOnce, count - first));
       stored.resize(size);
       wanted.resize(size);
       GRAVURE_CHECK(program_.read_set_points(first, stored));
@@ -119,7 +119,7 @@ class PathComparison {
       std::fill(expected.begin(), expected.end(), std::byte{0});
       GRAVURE_CHECK(slots.place(window, expected));
       GRAVURE_CHECK(compare_line(line, expected, differing));
-      if (line % kBlock == 0) {
+      if (line % kRowsAtOnce == 0) {
         GRAVURE_CHECK(go_on(lines_ / 2 + line / 2));
       }
     }

@@ -153,14 +153,14 @@ struct State {
 };
 
 /// Bounds differ by more than all roundings of measured distances: labels are those of measuring every distance.
-constexpr double kRounding = 1e-9;
+constexpr double kBoundSlack = 1e-9;
 
 /// Each point to its nearest centre; did a label change?
 bool assign(const Data& data, Blocks& blocks, State& state) {
   blocks.set(state.centres);
   bool changed = false;
   for (std::size_t i = 0; i < data.count; ++i) {
-    if (state.farthest_own[i] * (1 + kRounding) < state.nearest_other[i]) {
+    if (state.farthest_own[i] * (1 + kBoundSlack) < state.nearest_other[i]) {
       continue;
     }
     const Blocks::Nearest nearest = blocks.nearest(data.at(i));

@@ -11,7 +11,7 @@ namespace gravure::zones {
 namespace {
 
 constexpr std::size_t kDimensions = 6;
-constexpr std::size_t kMostLooks = 30'000'000;
+constexpr std::size_t kMostClusterLooks = 30'000'000;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// Middle of a piece by its length: how densely its points lie plays no part.
@@ -106,7 +106,7 @@ Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits
   std::size_t looks = 0;  // at a piece from a centre, as far as that is known beforehand
   for (std::size_t clusters = first;; ++clusters) {
     looks += clusters * pieces.size();
-    if (options.clusters == 0 && looks > kMostLooks) {
+    if (options.clusters == 0 && looks > kMostClusterLooks) {
       return Error{ErrorCode::out_of_range,
                    fmt::format("k: up to {} clusters of {} contours and parts of them do not meet the limits, and more "
                                "are not tried: give k, or wider limits",

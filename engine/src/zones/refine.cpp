@@ -17,7 +17,7 @@ double squared_angles(const std::vector<Piece>& pieces, const Zone& zone) noexce
 }
 
 /// Pieces looked at for moves, with repetition: what is left of thousands stays where the cover has put it.
-constexpr std::size_t kMostLooks = 20'000'000;
+constexpr std::size_t kMostMoveLooks = 20'000'000;
 
 class Refiner {
  public:
@@ -83,7 +83,7 @@ class Refiner {
   const ZoneLimits& limits_;
   std::vector<Zone>& zones_;
   std::vector<std::size_t> home_;
-  std::size_t looks_left_ = kMostLooks;
+  std::size_t looks_left_ = kMostMoveLooks;
 };
 
 }  // namespace

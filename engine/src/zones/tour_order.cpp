@@ -105,7 +105,7 @@ std::vector<std::size_t> nearest_neighbour(const TourTimes& times) {
 }
 
 /// Of zones in the orders that are tried: a hundred zones are improved as far as it goes, a thousand for some seconds.
-constexpr std::size_t kMostSteps = 100'000'000;
+constexpr std::size_t kMostTourSteps = 100'000'000;
 
 /// Turns round each stretch of the order, and moves each stretch of up to three zones to each other place, while one of
 /// these gains.
@@ -115,7 +115,7 @@ class Improver {
       : times_(times),
         order_(std::move(order)),
         best_(best_ways(times, order_)),
-        tries_left_(kMostSteps / order_.size()) {}
+        tries_left_(kMostTourSteps / order_.size()) {}
 
   TourOrder run() {
     constexpr int kMostSweeps = 50;

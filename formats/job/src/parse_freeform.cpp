@@ -16,6 +16,16 @@ std::string needs(std::string_view section, const std::string& keys) {
                                 : keys;
 }
 
+FreeformJob read_freeform(const Document& document, Violations& violations) {
+  const JobGrammar grammar{specs_of(key_table()), section_names(), section_is_required, needs};
+  KeyedReader reader(document, grammar);
+  FreeformJob job;
+  read_into(job, reader);
+  check_rules(document, reader.violations());
+  violations = reader.violations();
+  return job;
+}
+
 std::string folder_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   return slash == std::string::npos ? "" : path.substr(0, slash + 1);
@@ -35,13 +45,10 @@ Result<FreeformJob> parse_freeform_job(std::string_view text, const std::string&
     return Error{ErrorCode::bad_argument, place(path, syntax->at) + "not TOML: " + syntax->message};
   }
   const auto& document = std::get<Document>(parsed);
-  const JobGrammar grammar{specs_of(key_table()), section_names(), section_is_required, needs};
-  KeyedReader reader(document, grammar);
-  FreeformJob job;
-  read_into(job, reader);
-  check_rules(document, reader.violations());
-  if (!reader.violations().empty()) {
-    return reader.violations().to_error(path);
+  Violations violations;
+  FreeformJob job = read_freeform(document, violations);
+  if (!violations.empty()) {
+    return violations.to_error(path);
   }
   job.job.path = path;
   job.job.text = std::string(text);

@@ -51,6 +51,17 @@ std::string required_keys(std::string_view /*section*/, const std::string& keys)
   return keys;
 }
 
+ZonesJob read_zones(const Document& document, Violations& violations) {
+  const JobGrammar grammar{specs_of(key_table()), section_names(), section_is_required, required_keys};
+  KeyedReader reader(document, grammar);
+  ZonesJob job;
+  job.job.fpga.clock_multiplier = 2;
+  read_into(job, reader);
+  check_rules(document, job, reader.violations());
+  violations = reader.violations();
+  return job;
+}
+
 }  // namespace
 }  // namespace zones_file
 
@@ -65,14 +76,10 @@ Result<ZonesJob> parse_zones_job(std::string_view text, const std::string& path)
     return Error{ErrorCode::bad_argument, place(path, syntax->at) + "not TOML: " + syntax->message};
   }
   const auto& document = std::get<Document>(parsed);
-  const JobGrammar grammar{specs_of(key_table()), section_names(), section_is_required, required_keys};
-  KeyedReader reader(document, grammar);
-  ZonesJob job;
-  job.job.fpga.clock_multiplier = 2;
-  read_into(job, reader);
-  check_rules(document, job, reader.violations());
-  if (!reader.violations().empty()) {
-    return reader.violations().to_error(path);
+  Violations violations;
+  ZonesJob job = read_zones(document, violations);
+  if (!violations.empty()) {
+    return violations.to_error(path);
   }
   job.job.path = path;
   job.job.text = std::string(text);
