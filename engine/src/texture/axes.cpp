@@ -11,13 +11,13 @@
 namespace gravure::texture {
 namespace {
 
-constexpr double kPole = 1e-12;  ///< nearer to it than this C is open, as kinematics::inverse() has it
+constexpr double kPoleReach = 1e-12;  ///< nearer to it than this C is open, as kinematics::inverse() has it
 
 /// A and C that bring a normal (of length 1) under the beam, as [A] eq. 11 for both signs: with s for
 /// RotaryTable::sense the beam is (sin A sin C, s sin A cos C, cos A) in the workpiece.
 std::array<double, 2> tilt_and_turn(double sense, const Vector3& normal, double branch, double near_c_rad) {
   const double reach = std::hypot(normal.x(), normal.y());
-  if (reach <= kPole) {
+  if (reach <= kPoleReach) {
     // What C does not turn away: A takes up the part that is left, of either sign.
     const double y = sense * std::sin(near_c_rad) * normal.x() + std::cos(near_c_rad) * normal.y();
     return {sense * std::atan2(y, normal.z()), near_c_rad};
