@@ -39,14 +39,14 @@ Result<LandedPulses> land(LineSource& program) {
 
 constexpr double kLightest = 0.25;  // of what is there: to be told from the ground
 
-double shown(double share) {
+double visible_share(double share) {
   return kLightest + (1 - kLightest) * share;
 }
 
 /// Light where pulses are, darker where they are more.
 std::vector<double> shares_of_pulses(std::vector<double> pulses, double most) {
   for (double& value : pulses) {
-    value = value > 0 ? shown(value / most) : -1;
+    value = value > 0 ? visible_share(value / most) : -1;
   }
   return pulses;
 }
@@ -58,7 +58,7 @@ std::vector<double> shares_of_heights(const report::PulseMap& map) {
   const double range_mm = map.highest_mm() - map.lowest_mm();
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const double below_mm = map.highest_mm() - shares[i];
-    shares[i] = pulses[i] > 0 ? shown(std::clamp(range_mm > 0 ? below_mm / range_mm : 0.0, 0.0, 1.0)) : -1;
+    shares[i] = pulses[i] > 0 ? visible_share(std::clamp(range_mm > 0 ? below_mm / range_mm : 0.0, 0.0, 1.0)) : -1;
   }
   return shares;
 }
