@@ -103,7 +103,7 @@ TEST(ZonesJob, TakesTheDefaultsOfTheTable) {
   EXPECT_EQ(job.servo_us, 50);
 }
 
-struct Refusal {
+struct ZonesRefusal {
   std::string from;
   std::string to;
   std::string place;
@@ -112,7 +112,7 @@ struct Refusal {
 };
 
 TEST(ZonesJob, NamesLineAndColumnOfWhatIsWrong) {
-  const Refusal refusals[] = {
+  const ZonesRefusal refusals[] = {
       {"layer_mm = 0.1", "layer_mm = 0", "j.toml:7:12: ", "[zones] layer_mm = 0: must be a number from 0.0001",
        ErrorCode::out_of_range},
       {"layer_mm = 0.1", "layer_mm = \"thin\"", "j.toml:7:12: ", "must be a number"},
@@ -127,7 +127,7 @@ TEST(ZonesJob, NamesLineAndColumnOfWhatIsWrong) {
       {"[laser]", "[beam]\nfocal_length_mm = 100\n[laser]", "j.toml:8:1: ", "[beam] wavelength_um is missing"},
       {"[job]", "[job", "j.toml:1:", "not TOML"},
   };
-  for (const Refusal& refusal : refusals) {
+  for (const ZonesRefusal& refusal : refusals) {
     const auto read = parse_zones_job(with(kLeast, refusal.from, refusal.to), "j.toml");
     ASSERT_FALSE(read) << refusal.to;
     const std::string& message = read.error().message;
