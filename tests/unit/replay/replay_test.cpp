@@ -176,7 +176,7 @@ TEST_F(Replay, NoFileIsOverwritten) {
   FakeBoard board;
   const auto recording = RecordingLink::create(std::make_unique<DirectLink>(board), path_);
   ASSERT_FALSE(recording);
-  EXPECT_EQ(recording.error().code, ErrorCode::io);
+  EXPECT_EQ(recording.error().code, ErrorCode::bad_argument);
   EXPECT_NE(recording.error().message.find(path_), std::string::npos);
 }
 
