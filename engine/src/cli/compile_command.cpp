@@ -130,7 +130,7 @@ Result<int> run_compile(const CompileArguments& options, const Command& command)
   }
   const ImageFiles files;
   GRAVURE_TRY(const LoadedJob loaded, load_job(options.job, files, true));
-  std::vector<std::string> inputs = {options.job};
+  std::vector<std::string> inputs = files_of(loaded.job);
   for (const StackImage& image : loaded.images->images) {
     inputs.push_back(image.path);
   }

@@ -427,7 +427,8 @@ Result<void> check_rtl_lines(const EmulateOptions& options, const Plan& plan, Li
 }  // namespace
 
 Result<int> run_program(const EmulateOptions& options, const Command& command) {
-  GRAVURE_CHECK(refuse_overwrite({{"--edges", options.edges_path}, {"--vcd", options.vcd_path}}, {options.program}));
+  GRAVURE_CHECK(refuse_overwrite({{"--edges", options.edges_path}, {"--vcd", options.vcd_path}},
+                                 inputs_of_program(options.program)));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   if (program->header().plan.path) {
     return Error{ErrorCode::bad_argument,

@@ -66,10 +66,12 @@ Result<int> compile_freeform_job(const FreeformJob& job, const FreeformOutputs& 
     refuse_texture(job, planned.outcome, command);
     return kLimitViolated;
   }
+  const texture::TimedSplit& timed = planned.outcome.seven.timed;
+  GRAVURE_TRY(std::optional<TextOutput> points,
+              stage_points(outputs.points, timed.split, timed.axes, job.split.focus_axis));
   GRAVURE_TRY(const CompiledPath made, compile_texture(job, planned, outputs.program, outputs.grv));
-  if (!outputs.points.empty()) {
-    const texture::TimedSplit& timed = planned.outcome.seven.timed;
-    GRAVURE_CHECK(write_points(outputs.points, timed.split, timed.axes, job.split.focus_axis));
+  if (points) {
+    GRAVURE_CHECK(points->commit());
   }
   if (command.json) {
     print_json(compiled_json(job, planned, outputs.program, made));

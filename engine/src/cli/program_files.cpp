@@ -92,6 +92,38 @@ Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std:
   return {};
 }
 
+std::vector<std::string> files_of(const Job& job) {
+  std::vector<std::string> files = {job.path};
+  const fs::path folder = fs::path(job.path).parent_path();
+  for (const std::optional<std::string>& file : {job.scanner.field_grid, job.machine.file}) {
+    if (file) {
+      files.push_back((folder / *file).string());
+    }
+  }
+  return files;
+}
+
+std::vector<std::string> inputs_of_program(const std::string& path) {
+  std::vector<std::string> inputs = {path};
+  const Result<std::unique_ptr<LineSource>> program = open_grv(path);
+  if (!program) {
+    return inputs;  // whoever reads it says why
+  }
+  const ProgramHeader& header = program.value()->header();
+  const std::string job_path = (fs::path(path).parent_path() / header.job_path).string();
+  inputs.push_back(job_path);
+  if (const Result<Job> job = parse_job(header.job_text, job_path); job) {
+    const std::vector<std::string> files = files_of(job.value());
+    inputs.insert(inputs.end(), files.begin(), files.end());
+  }
+  for (const SourceImage& source : header.sources) {
+    if (const std::string place = locate_source(source, header, path, {}); !place.empty()) {
+      inputs.push_back(place);
+    }
+  }
+  return inputs;
+}
+
 Result<FoundImages> find_images(const ProgramHeader& header, const std::string& program_path,
                                 const std::string& images_folder, const ImageOpener& opener) {
   FoundImages found;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gravure/core/job.hpp"
 #include "gravure/core/layer_lines.hpp"
 #include "gravure/core/program.hpp"
 #include "gravure/pipeline/layer_reader.hpp"
@@ -55,6 +56,11 @@ struct OutputFile {
 /// Fails with bad_argument where one of `outputs` is one of `inputs`, or two of them are one file: by path, another way
 /// to the same folder, or a link.
 Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs);
+
+/// A job file and what it names beside its pictures: field grid and machine file.
+std::vector<std::string> files_of(const Job& job);
+/// A program and what it was made from, as far as it tells: no output may take the place of one of them.
+std::vector<std::string> inputs_of_program(const std::string& path);
 
 /// How many different revolutions a program holds: those that expose the same are stored once.
 std::size_t different_revolutions(const ProgramHeader& header);

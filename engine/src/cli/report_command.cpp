@@ -70,7 +70,7 @@ Result<std::optional<int>> run_path_report(const ReportArguments& options, const
 
 Result<int> run_report(const ReportArguments& options, const Command& command) {
   const ReportRequest& request = options.request;
-  GRAVURE_CHECK(refuse_overwrite(request.output, {request.program}));
+  GRAVURE_CHECK(refuse_overwrite(request.output, inputs_of_program(request.program)));
   GRAVURE_TRY(const std::optional<int> of_path, run_path_report(options, command));
   if (of_path) {
     return *of_path;

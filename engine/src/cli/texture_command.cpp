@@ -107,7 +107,9 @@ Result<int> decompose(TextureArguments options, const Command& command) {
   GRAVURE_TRY(const Found found, find(options, command));
   if (!options.points.empty()) {
     GRAVURE_TRY(const std::vector<texture::SevenAxes> axes, axes_of(options.job.axes, found.split()));
-    GRAVURE_CHECK(write_points(options.points, found.split(), axes, options.job.split.focus_axis));
+    GRAVURE_TRY(std::optional<TextOutput> points,
+                stage_points(options.points, found.split(), axes, options.job.split.focus_axis));
+    GRAVURE_CHECK(points->commit());
   }
   command.json ? print_found_json(options, found) : print_text(options, found);
   return found.outcome.violations.empty() ? kDone : kLimitViolated;

@@ -154,8 +154,21 @@ void add_points_option(CLI::App& verb, std::string& file) {
   verb.add_option("--points", file, "CSV of every point, its stages' point, axes and deviations");
 }
 
-Result<void> write_points(const std::string& file, const texture::Split& split,
-                          std::span<const texture::SevenAxes> axes, bool focus_axis) {
+Result<std::optional<TextOutput>> staged(TextOutput output, const std::string& file) {
+  if (cancel_token().cancelled()) {
+    return Error{ErrorCode::cancelled, "stopped; nothing was written"};
+  }
+  if (!output.flush(true)) {
+    return Error{ErrorCode::io, file + ": cannot be written: is the disk full?"};
+  }
+  return std::optional(std::move(output));
+}
+
+Result<std::optional<TextOutput>> stage_points(const std::string& file, const texture::Split& split,
+                                               std::span<const texture::SevenAxes> axes, bool focus_axis) {
+  if (file.empty()) {
+    return std::optional<TextOutput>();
+  }
   GRAVURE_TRY(TextOutput output, TextOutput::create(file));
   output.text() += "i,x,y,z,xp,yp,zp,X,Y,Z,A,C,U,V,fod_um,bia_deg";
   output.text() += focus_axis ? ",W\n" : "\n";
@@ -180,10 +193,7 @@ Result<void> write_points(const std::string& file, const texture::Split& split,
       break;
     }
   }
-  if (cancel_token().cancelled()) {
-    return Error{ErrorCode::cancelled, "stopped; nothing was written"};
-  }
-  return output.commit();
+  return staged(std::move(output), file);
 }
 
 Json split_json(const std::string& surface, const texture::TexturePath& path, const texture::Split& split,

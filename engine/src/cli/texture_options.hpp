@@ -67,9 +67,11 @@ void add_motion_options(CLI::App& verb, FreeformJob& job, std::vector<std::strin
 Result<void> set_limits(const std::vector<std::string>& limits, MotionSettings& motion);
 
 /// The columns that every verb's --points has: i,x,y,z,xp,yp,zp,X,Y,Z,A,C,U,V,fod_um,bia_deg; W behind them where
-/// there is an axis for it.
-Result<void> write_points(const std::string& file, const texture::Split& split,
-                          std::span<const texture::SevenAxes> axes, bool focus_axis);
+/// there is an axis for it. Whoever asked puts the file in its place, after the others; none for an empty path.
+Result<std::optional<TextOutput>> stage_points(const std::string& file, const texture::Split& split,
+                                               std::span<const texture::SevenAxes> axes, bool focus_axis);
+/// Writes what a staged file still holds back; io where that fails.
+Result<std::optional<TextOutput>> staged(TextOutput output, const std::string& file);
 void add_points_option(CLI::App& verb, std::string& file);
 
 /// surface, split, points, step_um, sigma_um, tries, fod_um, bia_deg and displacement_mm as all verbs print them.

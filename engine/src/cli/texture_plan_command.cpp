@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "path_program.hpp"
 #include "program_files.hpp"
@@ -21,8 +23,11 @@ struct TexturePlanArguments {
   std::int64_t every = 20;
 };
 
-Result<void> write_trajectory(const TexturePlanArguments& options, const PathMotion& motion) {
+Result<std::optional<TextOutput>> stage_trajectory(const TexturePlanArguments& options, const PathMotion& motion) {
   constexpr std::int64_t kBlock = 16'384;
+  if (options.trajectory.empty()) {
+    return std::optional<TextOutput>();
+  }
   GRAVURE_TRY(TextOutput output, TextOutput::create(options.trajectory));
   output.text() += "t_s,X,Y,Z,A,C,U,V,along_mm\n";
   std::vector<PathInstant> block;
@@ -45,10 +50,7 @@ Result<void> write_trajectory(const TexturePlanArguments& options, const PathMot
       break;
     }
   }
-  if (cancel_token().cancelled()) {
-    return Error{ErrorCode::cancelled, "stopped; nothing was written"};
-  }
-  return output.commit();
+  return staged(std::move(output), options.trajectory);
 }
 
 Result<int> plan(TexturePlanArguments options, const Command& command) {
@@ -57,12 +59,13 @@ Result<int> plan(TexturePlanArguments options, const Command& command) {
   GRAVURE_CHECK(set_limits(options.limits, options.job.motion));
   GRAVURE_CHECK(set_servos(options.servos, options.job.motion));
   GRAVURE_TRY(const TextureOutcome outcome, outcome_of(options.job, Depth::choice, command));
-  if (!options.points.empty()) {
-    GRAVURE_CHECK(write_points(options.points, outcome.seven.timed.split, outcome.seven.timed.axes,
-                               options.job.split.focus_axis));
-  }
-  if (!options.trajectory.empty()) {
-    GRAVURE_CHECK(write_trajectory(options, *outcome.seven.proven.path.motion));
+  GRAVURE_TRY(std::optional<TextOutput> points, stage_points(options.points, outcome.seven.timed.split,
+                                                             outcome.seven.timed.axes, options.job.split.focus_axis));
+  GRAVURE_TRY(std::optional<TextOutput> trajectory, stage_trajectory(options, *outcome.seven.proven.path.motion));
+  for (std::optional<TextOutput>* const output : {&points, &trajectory}) {
+    if (*output) {
+      GRAVURE_CHECK((*output)->commit());
+    }
   }
   command.json ? print_json(outcome_json(options.job, outcome)) : print(outcome_text(options.job, outcome));
   return outcome.violations.empty() ? kDone : kLimitViolated;

@@ -142,7 +142,7 @@ Result<int> run_trajectory(const TrajectoryArguments& options, const Command& co
   }
   GRAVURE_TRY(const Rows rows, Rows::of(options, opened));
   if (!options.output.empty()) {
-    GRAVURE_CHECK(refuse_overwrite(options.output, {options.program}));
+    GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program)));
     cancel_token();  // before there is a temporary file
     GRAVURE_TRY(TextOutput output, TextOutput::create(options.output));
     GRAVURE_CHECK(write_csv(rows, [&output](const std::string& text) -> Result<void> {

@@ -78,12 +78,11 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const UnrollArgumen
   page.compression = options.compression == "source" ? TiffCompression::deflate : compression_of(options.compression);
   page.x_dots_per_mm = rows ? along : across;
   page.y_dots_per_mm = rows ? across : along;
-  GRAVURE_CHECK(refuse_overwrite(options.output, {options.program}));
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program)));
   if (source == nullptr) {
     return page;  // where that is wrong, unroll() says so
   }
   const std::string path = locate_source(*source, header, options.program, {});
-  GRAVURE_CHECK(refuse_overwrite(options.output, {path}));
   const ImageFiles files;
   if (const Result<std::unique_ptr<ImageSource>> image = files.open(path, source->page); !path.empty() && image) {
     page.x_dots_per_mm = image.value()->info().x_dots_per_mm;

@@ -162,10 +162,16 @@ ReportRequest page_request(const std::string& path, const VerifyArguments& optio
   return request;
 }
 
+/// The program may be one that was just made of the job that is verified: its sources are the job's.
+Result<void> refuse_html(const std::string& path, const VerifyArguments& options) {
+  GRAVURE_CHECK(refuse_overwrite(options.html, {options.input}));
+  return refuse_overwrite(options.html, inputs_of_program(path));
+}
+
 /// `--html`: written whatever the verdict.
 Result<void> write_page(const std::string& path, VerifiedProgram verified, const VerifyArguments& options,
                         const Command& command) {
-  GRAVURE_CHECK(refuse_overwrite(options.html, {path, options.input}));
+  GRAVURE_CHECK(refuse_html(path, options));
   GRAVURE_CHECK(write_report(page_request(path, options), std::move(verified), command));
   return {};
 }
@@ -175,7 +181,7 @@ Result<int> verify_program(const std::string& path, const VerifyArguments& optio
     GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
     if (program->header().plan.path) {
       if (!options.html.empty()) {
-        GRAVURE_CHECK(refuse_overwrite(options.html, {path, options.input}));
+        GRAVURE_CHECK(refuse_html(path, options));
         GRAVURE_TRY(const WrittenPathReport written,
                     write_path_report(page_request(path, options), *program, options.images));
         return print_path_report(written.verified, command);

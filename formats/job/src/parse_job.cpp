@@ -63,8 +63,9 @@ class Reader {
     }
     violations_.add(mode->value.at,
                     "[job] mode = " + mode->value.shown + ": must be " + range_text(*find_key("job", "mode")) +
-                        " here; plan, compile and verify take \"freeform\" as well, `gravure zones compile` takes "
-                        "\"zones\"");
+                        " here; " +
+                        (mode->value.text == "zones" ? "use `gravure zones compile` and `gravure verify` for this job"
+                                                     : "use `gravure plan`, `compile` and `verify` for this job"));
     return true;
   }
 
