@@ -276,6 +276,7 @@ Result<ZoneSet> cover_zones(const std::vector<Piece>& pieces, const ZoneLimits& 
   const Candidates candidates = fit_field(pieces, by_direction, limits);
   const SetCover cover = smallest_cover(candidates.sets, pieces.size());
   set.zones = assign(pieces, candidates, cover.chosen, limits);
+  take_k_means(pieces, limits, set);
   refine_zones(pieces, limits, set.zones);
   sort_zones(set.zones);
   return set;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "gravure/zones/k_means.hpp"
 #include "zone_of.hpp"
@@ -95,18 +96,15 @@ void add_violations(const ZoneLimits& limits, ZoneSet& set) {
   }
 }
 
-}  // namespace
-
-Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const KMeansZones& options) {
-  GRAVURE_CHECK(check_limits(pieces, limits));
+/// The fewest clusters from `first` to `last` that meet the limits; where none do, `last` clusters and their
+/// violations.
+Result<ZoneSet> fewest_clusters(const std::vector<Piece>& pieces, const ZoneLimits& limits, std::size_t first,
+                                std::size_t last, const KMeansZones& options) {
   const std::vector<double> features = features_of(pieces, options.normalised);
-  const std::size_t bound = lower_bound_of(pieces, limits);
-  const std::size_t first = options.clusters > 0 ? options.clusters : bound;
-  const std::size_t last = options.clusters > 0 ? options.clusters : pieces.size();
   std::size_t looks = 0;  // at a piece from a centre, as far as that is known beforehand
   for (std::size_t clusters = first;; ++clusters) {
     looks += clusters * pieces.size();
-    if (options.clusters == 0 && looks > kMostClusterLooks) {
+    if (first < last && looks > kMostClusterLooks) {
       return Error{ErrorCode::out_of_range,
                    fmt::format("k: up to {} clusters of {} contours and parts of them do not meet the limits, and more "
                                "are not tried: give k, or wider limits",
@@ -115,10 +113,35 @@ Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits
     GRAVURE_TRY(ZoneSet set, cluster(pieces, features, clusters, options.seed));
     add_violations(limits, set);
     if (set.violations.empty() || clusters >= last) {
-      set.lower_bound = bound;
       return set;
     }
   }
+}
+
+}  // namespace
+
+void take_k_means(const std::vector<Piece>& pieces, const ZoneLimits& limits, ZoneSet& set) {
+  if (set.zones.size() <= set.lower_bound) {
+    return;
+  }
+  Result<ZoneSet> fewer = fewest_clusters(pieces, limits, set.lower_bound, set.zones.size() - 1, {});
+  if (!fewer || !fewer.value().violations.empty()) {
+    return;
+  }
+  set.zones = std::move(fewer).value().zones;
+  for (Zone& zone : set.zones) {
+    zone = zone_of(pieces, zone.pieces, limits, zone.direction).value_or(zone);
+  }
+}
+
+Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const KMeansZones& options) {
+  GRAVURE_CHECK(check_limits(pieces, limits));
+  const std::size_t bound = lower_bound_of(pieces, limits);
+  const std::size_t first = options.clusters > 0 ? options.clusters : bound;
+  const std::size_t last = options.clusters > 0 ? options.clusters : pieces.size();
+  GRAVURE_TRY(ZoneSet set, fewest_clusters(pieces, limits, first, last, options));
+  set.lower_bound = bound;
+  return set;
 }
 
 }  // namespace gravure::zones

@@ -45,6 +45,9 @@ bool are_apart(const Piece& a, const Piece& b, const ZoneLimits& limits);
 /// shrink.
 void refine_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, std::vector<Zone>& zones);
 
+/// The zones of k-means in place of those of `set` where they are fewer and within the limits; tried from the bound up.
+void take_k_means(const std::vector<Piece>& pieces, const ZoneLimits& limits, ZoneSet& set);
+
 /// A number of zones that no set of zones within the limits goes below.
 std::size_t lower_bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits);
 

@@ -62,6 +62,44 @@ TEST(CoverZones, NeedsSixForTheCeramicCoreAndProvesIt) {
   EXPECT_EQ(set.lower_bound, 6U);
 }
 
+/// Twelve arcs of 4 mm side by side round a cylinder.
+std::vector<Contour> long_arcs() {
+  std::vector<Contour> arcs(12);
+  for (std::size_t n = 0; n < arcs.size(); ++n) {
+    const double turn = static_cast<double>(n) * 1.2 * kRadians;
+    arcs[n].id = static_cast<std::int64_t>(n + 1);
+    arcs[n].direction = {0, std::sin(turn), std::cos(turn)};
+    for (double x = -2; x <= 2; x += 0.5) {
+      const double radius = 40 - x * x / 20;
+      arcs[n].points_mm.push_back({x, radius * std::sin(turn), radius * std::cos(turn)});
+    }
+  }
+  return arcs;
+}
+
+TEST(CoverZones, NeedsNoMoreThanKMeansForContoursLongerThanTheField) {
+  const ZoneLimits limits{5 * kRadians, 1.996};
+  const std::vector<Piece> pieces = cut_to_field(long_arcs(), limits.field_mm).value();
+  EXPECT_EQ(pieces.size(), 36U);
+  const ZoneSet set = cover_zones(pieces, limits).value();
+  expect_sound(pieces, limits, set);
+  EXPECT_LE(set.zones.size(), 12U);
+  EXPECT_LE(set.zones.size(), k_means_zones(pieces, limits, {}).value().zones.size());
+}
+
+TEST(CoverZones, TakesKMeansWhereThatFindsFewer) {
+  const ZoneLimits limits{5 * kRadians, 1.996};
+  std::vector<Piece> pieces = cut_to_field(long_arcs(), limits.field_mm).value();
+  ZoneSet each;
+  each.lower_bound = 1;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    each.zones.push_back(describe_zone(pieces, {i}, pieces[i].direction));
+  }
+  take_k_means(pieces, limits, each);
+  expect_sound(pieces, limits, each);
+  EXPECT_EQ(each.zones.size(), k_means_zones(pieces, limits, {}).value().zones.size());
+}
+
 TEST(KMeansZones, KeepThePublishedMeasureWithTenClusters) {
   const std::vector<Piece> pieces = core_pieces();
   const ZoneSet ten = k_means_zones(pieces, kLimits, {10, true, 1}).value();

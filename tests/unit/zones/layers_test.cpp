@@ -152,6 +152,23 @@ TEST(CutToField, KeepsLengthAndFitsTheField) {
   }
 }
 
+TEST(CutToField, CutsEvenly) {
+  Contour contour;
+  contour.points_mm = {{0, 0, 0}, {3, 0, 0}, {4.004, 0, 0}};
+  std::vector<Piece> pieces = cut_to_field({contour}, 2).value();
+  ASSERT_EQ(pieces.size(), 3U);
+  for (const Piece& piece : pieces) {
+    EXPECT_NEAR(length_mm(piece.points_mm), 4.004 / 3, 1e-12);
+  }
+  // Back and forth, then on: thirds of its length do not fit, and a cut where it leaves the field leaves 4 um.
+  contour.points_mm = {{0, 0, 0}, {0, 2, 0}, {0, 0, 0}, {0, 2, 0}, {0, 0, 0}, {4.004, 0, 0}};
+  pieces = cut_to_field({contour}, 2).value();
+  ASSERT_EQ(pieces.size(), 3U);
+  EXPECT_NEAR(length_mm(pieces[0].points_mm), 8.004, 1e-12);
+  EXPECT_NEAR(length_mm(pieces[1].points_mm), 2, 1e-12);
+  EXPECT_NEAR(length_mm(pieces[2].points_mm), 2, 1e-12);
+}
+
 TEST(CutToField, LeavesContoursThatFit) {
   Contour contour;
   contour.id = 3;

@@ -35,10 +35,12 @@ struct ZoneSet {
   std::vector<std::string> violations;  ///< of the limits, where k was given
 };
 
-/// The fewest zones we find such that every piece lies within the incidence limit of its zone's direction and every
-/// zone within the scan field. Circles of the limit's size through every two directions hold every set that any zone
-/// can have; of these (windows of the field where they are larger) a cover is found by branch and bound, and then
-/// pieces go to the nearest zone as in k-means while no limit breaks and the cones shrink. Each zone's cone is exact.
+/// The fewest zones found such that every piece lies within the incidence limit of its zone's direction and every zone
+/// within the scan field: proved the fewest where they are as many as the lower bound. Circles of the limit's size
+/// through every two directions hold every set that any zone can have; of these (windows of the field where they are
+/// larger) a cover is found by branch and bound. Where that is above the lower bound, k-means of seed 1 is tried with
+/// fewer clusters and taken if these meet the limits. Then pieces go to the nearest zone as in k-means while no limit
+/// breaks and the cones shrink. Each zone's cone is exact.
 ///
 /// The lower bound is the fewest circles that hold all directions, where the search proves it, and never less than the
 /// largest set found of pieces no two of which can share a zone. Errors: out_of_range for limits beyond their range.

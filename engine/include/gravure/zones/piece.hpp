@@ -19,10 +19,10 @@ struct Piece {
   Vector3 direction = Vector3::UnitZ();  ///< length 1
 };
 
-/// The contours, those that are larger than `field_mm` in the local frame of their own direction cut where they leave
-/// the field: the cut is a point of both parts, and no length is lost. out_of_range where field_mm is below 1 um, or so
-/// small that more than 10,000 parts come of it, and for more contours than that; bad_argument for a contour without
-/// points or direction.
+/// The contours, those that are larger than `field_mm` in the local frame of their own direction cut into as few parts
+/// as fit it, of equal length as far as such fit: the cut is a point of both parts, and no length is lost. out_of_range
+/// where field_mm is below 1 um, or so small that more than 10,000 parts come of it, and for more contours than that;
+/// bad_argument for a contour without points or direction.
 Result<std::vector<Piece>> cut_to_field(const std::vector<Contour>& contours, double field_mm);
 
 /// Length of a line of points.
