@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "path_program.hpp"
 #include "program_files.hpp"
@@ -141,11 +144,32 @@ Result<std::optional<TextOutput>> draw(const CompileOptions& options, const Load
   return std::optional(std::move(plot));
 }
 
+/// What no limit forbids and hardly anybody wants.
+void warn_of_contours(const std::vector<Contour>& contours, double pitch_mm) {
+  std::map<std::vector<std::array<double, 3>>, std::int64_t> seen;
+  for (const Contour& contour : contours) {
+    std::vector<zones::Vector3> points;
+    for (const std::array<double, 3>& point : contour.points_mm) {
+      points.emplace_back(point[0], point[1], point[2]);
+    }
+    if (const double length = zones::length_mm(points); length < pitch_mm) {
+      warn(fmt::format(
+          "contour {} is {:.6g} um long, less than [marking] pulse_pitch_um = {:.6g}: it gets one pulse or none",
+          contour.id, length * kUmPerMm, pitch_mm * kUmPerMm));
+    }
+    const auto [first, is_new] = seen.emplace(contour.points_mm, contour.id);
+    if (!is_new) {
+      warn(fmt::format("contours {} and {} are the same line: it is marked twice", first->second, contour.id));
+    }
+  }
+}
+
 Result<int> compile_zones(const CompileOptions& options, const Command& command) {
   GRAVURE_TRY(const LoadedZonesJob loaded, load_zones_job(options.job));
   const ZonesFiles& files = loaded.files;
   GRAVURE_CHECK(refuse_overwrite({{"--output", options.output}, {"--plot", options.plot}},
                                  {options.job, files.contours, files.transform, files.machine}));
+  warn_of_contours(loaded.request.contours, to_double(loaded.job.pulse_pitch_um) / kUmPerMm);
   GRAVURE_TRY(const ZonesProgram laid, lay_out_zones(loaded));
   GRAVURE_TRY(std::optional<TextOutput> plot, draw(options, loaded, laid));
   GRAVURE_TRY(const CompiledPath made, compile_zones_program(loaded, laid, options.output));
