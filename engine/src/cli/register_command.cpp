@@ -111,6 +111,7 @@ Json registration_json(const Registration& found) {
           {"converged", found.converged},
           {"degenerate", found.degenerate},
           {"scale_refused", found.scale_refused},
+          {"kept_as_started", found.kept_as_started},
           {"ambiguous", found.ambiguous},
           {"sure", is_sure(found)},
           {"shape", found.shape},
@@ -165,9 +166,11 @@ void warn_of(const Registration& found) {
     warn("the pose did not settle, or the scan lies further than 5 % of the part from the CAD: do not rely on it");
   }
   if (found.degenerate) {
-    warn(fmt::format("the points do not hold {} direction{} of the CAD{}: kept as the start had them",
-                     found.weak_directions.size(), found.weak_directions.size() == 1 ? "" : "s",
-                     found.shape.empty() ? "" : " (" + found.shape + ")"));
+    warn(fmt::format("the points do not hold {} direction{} of the CAD{}: {}", found.weak_directions.size(),
+                     found.weak_directions.size() == 1 ? "" : "s", found.shape.empty() ? "" : " (" + found.shape + ")",
+                     found.kept_as_started
+                         ? "kept as the start had them"
+                         : "as the start had them the scan would not lie on the CAD, so any will do"));
   }
   if (found.scale_refused) {
     warn("the points do not hold the scale: it is 1");

@@ -65,6 +65,15 @@ int NormalSystem::weak_directions(int unknowns, double weak_share) const {
   return static_cast<int>((solver.eigenvalues().array() <= least).count());
 }
 
+Eigen::MatrixXd NormalSystem::weak_motions(double weak_share) const {
+  if (count_ == 0) {
+    return Eigen::MatrixXd(kRigidUnknowns, 0);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix(kRigidUnknowns));
+  const double least = weak_share * solver.eigenvalues()[kRigidUnknowns - 1];
+  return solver.eigenvectors().leftCols((solver.eigenvalues().array() <= least).count());
+}
+
 bool NormalSystem::holds_scale(double weak_share) const {
   constexpr double kRounding = 1e-12;  // of the largest eigenvalue: below, there is nothing to share
   const Eigen::MatrixXd all = matrix(kAllUnknowns);

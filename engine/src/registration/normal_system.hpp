@@ -38,6 +38,8 @@ class NormalSystem {
   /// eigenvalue. `log_scale` is pulled to 0 as a value known to `scale_deviation` would.
   SmallMotion step(int unknowns, double weak_share, double log_scale, double scale_deviation) const;
   int weak_directions(int unknowns, double weak_share) const;
+  /// Columns: unit vectors of turns and shifts below `weak_share` of the largest eigenvalue of the rigid motion.
+  Eigen::MatrixXd weak_motions(double weak_share) const;
   /// Is scale held while the rigid motion is free? Not where less than `weak_share` of the largest eigenvalue is left
   /// to it, nor where a weak direction, which step() leaves where it is, would explain most of it: scale would then be
   /// wrong by what that direction is off.

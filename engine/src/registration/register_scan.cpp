@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cad_surface.hpp"
+#include "keep_start.hpp"
 #include "morton.hpp"
 #include "polish.hpp"
 #include "start_search.hpp"
@@ -145,7 +146,8 @@ Result<Registration> register_scan(const CadModel& cad_model, const PointSet& sc
   const IcpState rough = pose_of_few(cad, few, start, settings, result);
   done(3);
   std::vector<double> residuals;
-  const IcpState state = polish(cad, points, rough, settings, &residuals);
+  IcpState state = polish(cad, points, rough, settings, &residuals);
+  result.kept_as_started = keep_start(cad, points, options.start.inverse(), settings, state, residuals);
   done(kRegistrationSteps);
   result.iterations += state.iterations - rough.iterations;
   result.scan_points = static_cast<std::int64_t>(points.points.size());

@@ -35,7 +35,7 @@ struct RegistrationOptions {
       nullptr;  ///< told after each of kRegistrationSteps: surface, start, pose of a few points, of all
 };
 
-/// A motion of the CAD that the points do not hold: along or about it the pose is only as good as the start.
+/// A motion of the CAD that the points do not hold: along or about it the pose is that of the start.
 struct WeakDirection {
   std::string name;  ///< "turn about (0, 0, 1) through (1, 2, 3)", "shift along (1, 0, 0)", "scale"; CAD frame, mm
   double eigenvalue = 0;
@@ -48,7 +48,9 @@ struct Registration {
   std::int64_t scan_points = 0;  ///< of which `inliers` were
   int iterations = 0;
   bool converged = false;
-  bool degenerate = false;     ///< some direction is weak; it was kept as it was
+  bool degenerate = false;  ///< some direction is weak
+  /// Weak directions are as the start has them; false where the scan would then no longer lie on the CAD.
+  bool kept_as_started = true;
   bool scale_refused = false;  ///< scale was asked for but is not observable: it is 1
   bool ambiguous = false;      ///< another pose fits nearly as well: a part of some symmetry
   std::string shape;           ///< "plane", "cylinder", "sphere" ...; empty where no direction is weak
