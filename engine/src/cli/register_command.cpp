@@ -12,6 +12,7 @@
 #include "gravure/registration/register_scan.hpp"
 #include "motion_options.hpp"
 #include "program_files.hpp"
+#include "text_output.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -110,8 +111,8 @@ Json registration_json(const Registration& found) {
           {"iterations", found.iterations},
           {"converged", found.converged},
           {"degenerate", found.degenerate},
-          {"scale_refused", found.scale_refused},
           {"kept_as_started", found.kept_as_started},
+          {"scale_refused", found.scale_refused},
           {"ambiguous", found.ambiguous},
           {"sure", is_sure(found)},
           {"shape", found.shape},
@@ -180,9 +181,13 @@ void warn_of(const Registration& found) {
   }
 }
 
-Result<std::vector<PlacedContour>> place_contours(const RegisterOptions& options, const CadModel& cad,
-                                                  const PointSet& scan, const Registration& found,
-                                                  const formats::ContourFile& contours) {
+struct LaidContours {
+  std::vector<PlacedContour> placed;
+  std::string json;  ///< the file of them
+};
+
+Result<LaidContours> place_contours(const RegisterOptions& options, const CadModel& cad, const PointSet& scan,
+                                    const Registration& found, const formats::ContourFile& contours) {
   registration::ContourOptions around = options.around;
   around.with_scale = options.pose.with_scale && !found.scale_refused;
   Result<std::vector<PlacedContour>> laid = [&] {
@@ -206,8 +211,7 @@ Result<std::vector<PlacedContour>> place_contours(const RegisterOptions& options
     warn(fmt::format("{} of {} contours lie as the whole pose has them: too few points around them, or no agreement",
                      placed.size() - refined, placed.size()));
   }
-  GRAVURE_CHECK(write_whole(options.contours_output, formats::contours_to_json(there)));
-  return placed;
+  return LaidContours{std::move(placed), formats::contours_to_json(there)};
 }
 
 Result<formats::ContourFile> contours_to_move(const RegisterOptions& options) {
@@ -241,17 +245,27 @@ Result<int> run_register(const RegisterOptions& options, bool json) {
   warn_of(found);
   Json document = registration_json(found);
   std::string text = registration_text(found);
+  std::vector<TextOutput> files;  // all of them, or none
+  const auto stage = [&files](const std::string& path, std::string content) -> Result<void> {
+    GRAVURE_TRY(TextOutput file, TextOutput::staged(path, std::move(content)));
+    files.push_back(std::move(file));
+    return {};
+  };
   if (!contours.contours.empty()) {
-    GRAVURE_TRY(const auto placed, place_contours(options, cad, scan, found, contours));
-    document["contours"] = contours_json(placed);
-    GRAVURE_TRY(document["contours_out_sha256"], sha256_file(options.contours_output));
-    text += fmt::format("{} contours written to {}\n", placed.size(), options.contours_output);
+    GRAVURE_TRY(LaidContours laid, place_contours(options, cad, scan, found, contours));
+    document["contours"] = contours_json(laid.placed);
+    document["contours_out_sha256"] = sha256_text(laid.json);
+    text += fmt::format("{} contours written to {}\n", laid.placed.size(), options.contours_output);
+    GRAVURE_CHECK(stage(options.contours_output, std::move(laid.json)));
   }
   if (!options.residuals.empty()) {
-    GRAVURE_CHECK(write_whole(options.residuals, residuals_csv(scan, found)));
+    GRAVURE_CHECK(stage(options.residuals, residuals_csv(scan, found)));
   }
   if (!options.output.empty()) {
-    GRAVURE_CHECK(write_whole(options.output, document.dump(2) + "\n"));
+    GRAVURE_CHECK(stage(options.output, document.dump(2) + "\n"));
+  }
+  for (TextOutput& file : files) {
+    GRAVURE_CHECK(file.commit());
   }
   json ? print_json(document) : print(text);
   return is_sure(found) ? kDone : kLimitViolated;

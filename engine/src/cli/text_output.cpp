@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "verb.hpp"
+
 namespace gravure::cli {
 
 Result<TextOutput> TextOutput::create(const std::string& path) {
@@ -11,6 +13,16 @@ Result<TextOutput> TextOutput::create(const std::string& path) {
     return Error{ErrorCode::io, path + ": cannot open the output"};
   }
   return TextOutput(std::move(output), file);
+}
+
+Result<TextOutput> TextOutput::staged(const std::string& path, std::string text) {
+  cancel_token();  // somebody "looks at it": Ctrl-C leaves no temporary file behind
+  GRAVURE_TRY(TextOutput output, create(path));
+  output.text_ = std::move(text);
+  if (!output.flush(true) || std::fflush(output.file_.get()) != 0) {
+    return Error{ErrorCode::io, path + ": cannot be written: is the disk full?"};
+  }
+  return output;
 }
 
 bool TextOutput::flush(bool all) {

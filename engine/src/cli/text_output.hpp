@@ -13,6 +13,8 @@ namespace gravure::cli {
 class TextOutput {
  public:
   static Result<TextOutput> create(const std::string& path);
+  /// All of `text` written, but not in its place before commit(): for files that come together or not at all.
+  static Result<TextOutput> staged(const std::string& path, std::string text);
   std::string& text() { return text_; }
   /// Writes away what has gathered, when it is worth it; false once a write has failed.
   bool flush(bool all);

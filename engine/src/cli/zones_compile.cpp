@@ -136,11 +136,7 @@ Result<std::optional<TextOutput>> draw(const CompileOptions& options, const Load
   if (options.plot.empty()) {
     return std::optional<TextOutput>();
   }
-  GRAVURE_TRY(TextOutput plot, TextOutput::create(options.plot));
-  plot.text() = zones_to_svg(laid.zones, loaded.job.contours);
-  if (!plot.flush(true)) {
-    return Error{ErrorCode::io, options.plot + ": cannot be written: is the disk full?"};
-  }
+  GRAVURE_TRY(TextOutput plot, TextOutput::staged(options.plot, zones_to_svg(laid.zones, loaded.job.contours)));
   return std::optional(std::move(plot));
 }
 
