@@ -109,6 +109,18 @@ TEST(KMeansZones, KeepThePublishedMeasureWithTenClusters) {
   EXPECT_GT(worst_pairwise_deg(eight), 5);
 }
 
+/// J of [D] eq. 9 by hand: x / range is 0, 0.1, 0.9 and 1, and the last direction is sqrt(0.4) from the others.
+TEST(KMeansZones, SayThePublishedObjective) {
+  const Vector3 up(0, 0, 1);
+  const std::vector<Piece> pieces{piece_at({2, 7, 3}, up), piece_at({3, 7, 3}, up), piece_at({11, 7, 3}, up),
+                                  piece_at({12, 7, 3}, {0.6, 0, 0.8})};
+  const double of_directions = 0.4 / 2;
+  const ZoneSet scaled = k_means_zones(pieces, kLimits, {2, true, 1}).value();
+  EXPECT_NEAR(scaled.inertia, 2 * 0.1 * 0.1 / 2 + of_directions, 1e-12);
+  const ZoneSet raw = k_means_zones(pieces, kLimits, {2, false, 1}).value();
+  EXPECT_NEAR(raw.inertia, 2 * 1.0 / 2 + of_directions, 1e-12);
+}
+
 TEST(KMeansZones, FailWithoutNormalisationAsPublished) {
   const ZoneSet raw = k_means_zones(core_pieces(), kLimits, {10, false, 1}).value();
   EXPECT_NEAR(worst_pairwise_deg(raw), 39.8, 0.05);
