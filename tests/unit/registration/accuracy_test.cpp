@@ -59,6 +59,46 @@ TEST(RegisterScan, FindsTheScale) {
   EXPECT_EQ(found.eigenvalues.size(), 7U);
 }
 
+TEST(RegisterScan, FindsPoseAndScaleOfTwoHundredThousandPoints) {
+  GRAVURE_TRACE_DICE();
+  Dice dice(5);
+  const Blades made = blades(200'000, 200'000, dice);
+  const Similarity truth = pose(0.6 * kDegree, kAxis, {0.3, -0.35, 0.2}, 1.01);
+  RegistrationOptions options;
+  options.with_scale = true;
+  const Registration found = registered(made.cad, without_normals(moved(made.samples, truth, kNoiseMm, dice)), options);
+  EXPECT_TRUE(found.converged);
+  EXPECT_NEAR(found.cad_to_scan.scale, 1.01, 1e-4);
+  EXPECT_LT(rms_between(found.cad_to_scan, truth, made.cad.points_mm), 0.001);
+}
+
+/// The tip is not in the scan, a fifth of the points.
+TEST(RegisterScan, FindsThePoseWhereFourFifthsOverlap) {
+  GRAVURE_TRACE_DICE();
+  Dice dice(6);
+  const Blades made = blades(100'000, 62'500, dice);
+  std::vector<double> heights;
+  for (const Point3& point : made.samples.points_mm) {
+    heights.push_back(point[2]);
+  }
+  std::nth_element(heights.begin(), heights.begin() + 50'000, heights.end());
+  PointSet seen;
+  for (const Point3& point : made.samples.points_mm) {
+    if (point[2] < heights[50'000]) {
+      seen.points_mm.push_back(point);
+    }
+  }
+  ASSERT_EQ(seen.points_mm.size(), 50'000U);
+  const Similarity truth = pose(0.6 * kDegree, kAxis, {0.3, -0.35, 0.2}, 1.01);
+  RegistrationOptions options;
+  options.with_scale = true;
+  const Registration found = registered(made.cad, moved(seen, truth, kNoiseMm, dice), options);
+  EXPECT_TRUE(found.converged);
+  EXPECT_NEAR(found.cad_to_scan.scale, 1.01, 2e-4);
+  EXPECT_LT(rms_between(found.cad_to_scan, truth, made.cad.points_mm), 0.002);
+  EXPECT_GT(static_cast<double>(found.inliers), 0.99 * 50'000);
+}
+
 /// Bent by `most_mm` at the tip, along y.
 PointSet bent(PointSet set, double most_mm) {
   for (Point3& point : set.points_mm) {
