@@ -2,6 +2,8 @@
 
 #include <cassert>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 #include "chain.hpp"
 #include "gravure/kinematics/machine.hpp"
@@ -92,11 +94,13 @@ Result<void> check_positions(const Machine& machine, std::span<const double> joi
     const bool is_low = joint.limits.least && joints[i] < *joint.limits.least;
     const bool is_high = joint.limits.most && joints[i] > *joint.limits.most;
     if (is_low || is_high) {
-      const std::string least = joint.limits.least ? fmt::format("{}", *joint.limits.least) : "any";
-      const std::string most = joint.limits.most ? fmt::format("{}", *joint.limits.most) : "any";
+      const bool is_turning = joint.kind == JointKind::revolute;
+      const auto in_unit = [&](const std::optional<double>& value) {
+        return value ? fmt::format("{:.9g}", is_turning ? *value * 180 / std::numbers::pi : *value) : "any";
+      };
       return Error{ErrorCode::out_of_range,
-                   fmt::format("kinematics: joint {} at {} {}: its limits are {} to {}", joint.name, joints[i],
-                               joint.kind == JointKind::prismatic ? "mm" : "rad", least, most)};
+                   fmt::format("kinematics: joint {} at {} {}: its limits are {} to {}", joint.name, in_unit(joints[i]),
+                               is_turning ? "deg" : "mm", in_unit(joint.limits.least), in_unit(joint.limits.most))};
     }
   }
   return {};

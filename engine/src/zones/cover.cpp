@@ -84,19 +84,6 @@ std::vector<Vector3> sample_directions(const std::vector<Piece>& pieces, bool& i
   return sample;
 }
 
-/// The axes `angle` away from both directions; none where they are farther apart than that reaches.
-std::vector<Vector3> axes_through(const Vector3& a, const Vector3& b, double angle) {
-  const Vector3 middle = (a + b).normalized();
-  const Vector3 side = a.cross(b).normalized();
-  // cos(angle) = cos(half) cos(lift): the axis is lifted out of the plane of both.
-  const double cosine = std::cos(angle) / middle.dot(a);
-  if (!(cosine <= 1) || !side.allFinite() || !middle.allFinite()) {
-    return {};
-  }
-  const double sine = std::sqrt(1 - cosine * cosine);
-  return {cosine * middle + sine * side, cosine * middle - sine * side};
-}
-
 /// Every largest set of pieces within the limit of one direction, whatever their place.
 Candidates candidates_by_direction(const std::vector<Piece>& pieces, double limit) {
   Candidates found;

@@ -8,6 +8,7 @@
 
 #include "gravure/kinematics/machines.hpp"
 #include "zone_of.hpp"
+#include "zone_travel.hpp"
 
 namespace gravure::zones {
 namespace {
@@ -129,7 +130,12 @@ Result<ZonePlan> plan_zones(const ZonePlanRequest& request) {
   plan.violations = set.violations;
   std::vector<PlannedZone> zones;
   std::vector<Stops> stops;
-  for (const Zone& zone : set.zones) {
+  const ZoneCheck is_reached = [&](const Zone& zone) -> Result<void> {
+    GRAVURE_TRY(const PlannedZone planned, lay_out(plan.pieces, zone, request.max_layer_mm));
+    return check_travel(request.machine, stops_of(planned));
+  };
+  for (Zone zone : set.zones) {
+    GRAVURE_CHECK(turn_within_travel(request.contours, plan.pieces, limits, request.machine, is_reached, zone));
     GRAVURE_TRY(PlannedZone planned, lay_out(plan.pieces, zone, request.max_layer_mm));
     stops.push_back(stops_of(planned));
     zones.push_back(std::move(planned));

@@ -174,6 +174,11 @@ Result<void> check_limits(const Machine& machine) {
   return {};
 }
 
+Result<void> check_travel(const Machine& machine, const Stops& stops) {
+  GRAVURE_CHECK(ways_of(machine, stops));
+  return {};
+}
+
 Result<double> move_time_s(const Machine& machine, const JointPositions& from, const JointPositions& to) {
   double time = 0;
   for (std::size_t j = 0; j < machine.joints.size(); ++j) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -48,6 +49,18 @@ Extent extent_of(const std::vector<Piece>& pieces, const std::vector<std::size_t
     extent.add(extent_of(pieces[i], frame));
   }
   return extent;
+}
+
+std::vector<Vector3> axes_through(const Vector3& a, const Vector3& b, double angle) {
+  const Vector3 middle = (a + b).normalized();
+  const Vector3 side = a.cross(b).normalized();
+  // cos(angle) = cos(half) cos(lift): the axis is lifted out of the plane of both.
+  const double cosine = std::cos(angle) / middle.dot(a);
+  if (!(cosine <= 1) || !side.allFinite() || !middle.allFinite()) {
+    return {};
+  }
+  const double sine = std::sqrt(1 - cosine * cosine);
+  return {cosine * middle + sine * side, cosine * middle - sine * side};
 }
 
 LocalFrame frame_of(const Vector3& direction) {

@@ -20,6 +20,9 @@ struct Extent {
 Extent extent_of(const Piece& piece, const LocalFrame& frame) noexcept;
 Extent extent_of(const std::vector<Piece>& pieces, const std::vector<std::size_t>& which, const LocalFrame& frame);
 
+/// The axes `angle` away from both directions; none where they are farther apart than that reaches.
+std::vector<Vector3> axes_through(const Vector3& a, const Vector3& b, double angle);
+
 /// The frame of a direction of length 1, its origin that of the part.
 LocalFrame frame_of(const Vector3& direction);
 

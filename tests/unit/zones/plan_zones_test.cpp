@@ -68,6 +68,66 @@ TEST(PlanZones, SaysWhichLimitsAGivenNumberOfClustersBreaks) {
   EXPECT_EQ(plan.lower_bound, 6U);
 }
 
+/// Lines of 1 mm, each seen from where A stands at its angle.
+ZonePlanRequest tilted_request(const std::vector<double>& tilts_deg) {
+  ZonePlanRequest request = core_request();
+  request.contours.clear();
+  for (const double tilt_deg : tilts_deg) {
+    const double tilt = tilt_deg * std::numbers::pi / 180;
+    Contour contour;
+    contour.id = static_cast<std::int64_t>(request.contours.size() + 7);
+    contour.direction = {0, std::sin(tilt), std::cos(tilt)};
+    const double y = 10 * std::sin(tilt);
+    const double z = 10 * std::cos(tilt);
+    contour.points_mm = {{0, y, z}, {1, y, z}};
+    request.contours.push_back(contour);
+  }
+  return request;
+}
+
+TEST(PlanZones, TurnsAZoneWithinTravelWhereItsContoursAllowIt) {
+  for (const std::vector<double>& tilts :
+       {std::vector<double>{120, 122}, {123}, {121, 124.9999}, {119, 120, 123, 124}}) {
+    const ZonePlanRequest request = tilted_request(tilts);
+    const Result<ZonePlan> plan = plan_zones(request);
+    ASSERT_TRUE(plan) << plan.error().message;
+    EXPECT_TRUE(plan.value().violations.empty());
+    ASSERT_EQ(plan.value().zones.size(), 1U);
+    const PlannedZone& zone = plan.value().zones[0];
+    EXPECT_LE(zone.zone.max_incidence_rad, request.max_incidence_rad + 1e-9);
+    for (const PlannedLayer& layer : zone.layers) {
+      const double a_deg = std::abs(layer.joints[3]) * 180 / std::numbers::pi;
+      EXPECT_LE(a_deg, 120);
+      EXPECT_GT(a_deg, 119.99);  // the nearest
+    }
+  }
+}
+
+TEST(PlanZones, LeavesZonesWithinTravelAsTheyAre) {
+  const ZonePlan plan = plan_zones(tilted_request({117, 119})).value();
+  ASSERT_EQ(plan.zones.size(), 1U);
+  EXPECT_NEAR(plan.zones[0].zone.max_incidence_rad, std::numbers::pi / 180, 1e-9);
+}
+
+TEST(PlanZones, TurnsAwayFromThePoleWhereTravelBeginsBeyondIt) {
+  ZonePlanRequest request = tilted_request({30, 32});
+  request.machine.joints[3].limits.least = 33 * std::numbers::pi / 180;
+  const Result<ZonePlan> plan = plan_zones(request);
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_NEAR(plan.value().zones[0].layers[0].joints[3] * 180 / std::numbers::pi, 33, 0.01);
+}
+
+TEST(PlanZones, NamesTheContourThatNoTravelReaches) {
+  const Result<ZonePlan> plan = plan_zones(tilted_request({120, 126}));
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(
+      plan.error().message,
+      "contour 8: layer 0: kinematics: joint A at 126 deg: its limits are -120 to 120: no direction found within 5 "
+      "deg of its zone's contours is within travel: allow more incidence, clamp the part another way and move its "
+      "contours with it, or take a machine of more travel");
+}
+
 TEST(PlanZones, RefusesWhatItCannotDo) {
   ZonePlanRequest request = core_request();
   request.max_layer_mm = 0;

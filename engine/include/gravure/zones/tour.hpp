@@ -29,6 +29,10 @@ struct Tour {
 /// Fails with bad_argument, naming the joint, where speed, acceleration or jerk limits are missing.
 Result<void> check_limits(const Machine& machine);
 
+/// Whether every stop of a zone is within travel, from one branch of A at least; errors as kinematics::inverse(),
+/// naming the layer.
+Result<void> check_travel(const Machine& machine, const Stops& stops);
+
 /// Time of a synchronised move from rest to rest under the machine's limits ([C1] profiles, engine/motion).
 Result<double> move_time_s(const Machine& machine, const JointPositions& from, const JointPositions& to);
 
