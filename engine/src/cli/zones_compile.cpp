@@ -143,21 +143,30 @@ Result<std::optional<TextOutput>> draw(const CompileOptions& options, const Load
 /// What no limit forbids and hardly anybody wants.
 void warn_of_contours(const std::vector<Contour>& contours, double pitch_mm) {
   std::map<std::vector<std::array<double, 3>>, std::int64_t> seen;
+  std::vector<std::string> too_short;
+  std::vector<std::string> twice;
   for (const Contour& contour : contours) {
     std::vector<zones::Vector3> points;
     for (const std::array<double, 3>& point : contour.points_mm) {
       points.emplace_back(point[0], point[1], point[2]);
     }
     if (const double length = zones::length_mm(points); length < pitch_mm) {
-      warn(fmt::format(
-          "contour {} is {:.6g} um long, less than [marking] pulse_pitch_um = {:.6g}: it gets one pulse or none",
-          contour.id, length * kUmPerMm, pitch_mm * kUmPerMm));
+      too_short.push_back(fmt::format("contour {} is {:.6g} um long", contour.id, length * kUmPerMm));
     }
     const auto [first, is_new] = seen.emplace(contour.points_mm, contour.id);
     if (!is_new) {
-      warn(fmt::format("contours {} and {} are the same line: it is marked twice", first->second, contour.id));
+      twice.push_back(fmt::format("contours {} and {} are the same line", first->second, contour.id));
     }
   }
+  const auto say = [](const std::vector<std::string>& found, const std::string& what) {
+    if (!found.empty()) {
+      const std::string others = found.size() > 1 ? fmt::format(" ({} such)", found.size()) : "";
+      warn(found.front() + what + others);
+    }
+  };
+  say(too_short,
+      fmt::format(", less than [marking] pulse_pitch_um = {:.6g}: it gets one pulse or none", pitch_mm * kUmPerMm));
+  say(twice, ": it is marked twice");
 }
 
 Result<int> compile_zones(const CompileOptions& options, const Command& command) {
@@ -165,13 +174,13 @@ Result<int> compile_zones(const CompileOptions& options, const Command& command)
   const ZonesFiles& files = loaded.files;
   GRAVURE_CHECK(refuse_overwrite({{"--output", options.output}, {"--plot", options.plot}},
                                  {options.job, files.contours, files.transform, files.machine}));
-  warn_of_contours(loaded.request.contours, to_double(loaded.job.pulse_pitch_um) / kUmPerMm);
   GRAVURE_TRY(const ZonesProgram laid, lay_out_zones(loaded));
   GRAVURE_TRY(std::optional<TextOutput> plot, draw(options, loaded, laid));
   GRAVURE_TRY(const CompiledPath made, compile_zones_program(loaded, laid, options.output));
   if (plot) {
     GRAVURE_CHECK(plot->commit());
   }
+  warn_of_contours(loaded.request.contours, to_double(loaded.job.pulse_pitch_um) / kUmPerMm);
   report(options, loaded, laid.zones, *laid.motion, made, command);
   return kDone;
 }

@@ -16,10 +16,10 @@ namespace {
 /// It stands on the edges of one or two circles: those of pieces farthest from the answer so far join, one at a time.
 std::optional<Vector3> nearest_allowed(const std::vector<Piece>& pieces, const std::vector<std::size_t>& which,
                                        double limit, const Vector3& pole) {
-  constexpr int kMostRounds = 64;
+  constexpr int kTravelRounds = 64;
   std::vector<Vector3> standing_on;
   std::optional<Vector3> best = pole;
-  for (int round = 0; best && round < kMostRounds; ++round) {
+  for (int round = 0; best && round < kTravelRounds; ++round) {
     const std::size_t farthest = *std::max_element(which.begin(), which.end(), [&](std::size_t a, std::size_t b) {
       return angle_between(*best, pieces[a].direction) < angle_between(*best, pieces[b].direction);
     });
