@@ -174,8 +174,8 @@ const Refusal kContradictions[] = {
      "[image] revolutions = 100: contradicts levels = 99 (line 34); order = \"sequence\" needs one layer per "
      "revolution; say order = \"cycle\" or \"hold\", or make them equal"},
     {"ModeWithKeysOfItsOwn", "\"rotary\"", "\"freeform\"", kBad, "\"freeform\"",
-     "[job] mode = \"freeform\": must be \"rotary\", \"helical\" or \"flat\" here; plan, compile and verify take "
-     "\"freeform\" as well, `gravure zones compile` takes \"zones\""},
+     "[job] mode = \"freeform\": must be \"rotary\", \"helical\" or \"flat\" here; use `gravure plan`, `compile` and "
+     "`verify` for this job"},
     {"CarriageOfARotaryJob", "[image]", "[carriage]\nlayers = 0\n[image]", kBad, "[carriage]",
      "[carriage]: only mode = \"helical\" has this section, not mode = \"rotary\": take it out, or set that mode"},
     {"StageOfARotaryJob", "[image]", "[stage]\nlines = 10\n[image]", kBad, "[stage]",

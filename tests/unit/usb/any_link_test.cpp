@@ -116,9 +116,9 @@ class AnyLink : public testing::TestWithParam<std::string> {
   }
   static std::unique_ptr<DeviceLink> emulated() { return std::make_unique<emulator::EmulatedLink>(board()); }
   static void on_usb(const Body& body) {
+    test::EmulatedUsbBoard below(board());  // outlives the bus, whose thread serves it to the end
     auto bus = test::MockBus::create();
     ASSERT_TRUE(bus) << bus.error().message;
-    test::EmulatedUsbBoard below(board());
     bus.value()->plug(below, {.serial = "ANY-1"});
     const auto link = usb::open_usb_link({});
     ASSERT_TRUE(link) << link.error().message;
