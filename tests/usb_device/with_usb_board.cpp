@@ -161,11 +161,11 @@ int status_of(pid_t pid) {
 }
 
 int run(const Request& request) {
+  std::list<EmulatedUsbBoard> boards;  // outlive the bus, whose threads serve them to the end
   auto bus = MockBus::create();
   if (!bus) {
     give_up(bus.error().message, kSkipped);
   }
-  std::list<EmulatedUsbBoard> boards;
   for (const std::string& text : request.boards) {
     const emulator::BoardName name = or_give_up(emulator::parse_board_name(text));
     boards.emplace_back(or_give_up(emulator::EmulatedBoard::open(name.folder, name.options), 3));
