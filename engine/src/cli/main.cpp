@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "log.hpp"
-#include "motion_command.hpp"
-#include "report_command.hpp"
-#include "texture_command.hpp"
+#include "motion/motion_command.hpp"
+#include "report/report_command.hpp"
+#include "texture/texture_command.hpp"
 #include "verb.hpp"
-#include "zones_command.hpp"
+#include "zones/zones_command.hpp"
 
 namespace {
 
