@@ -11,6 +11,7 @@
 #include "gravure/formats/image_kind.hpp"
 #include "header_facts.hpp"
 #include "oiio_source.hpp"
+#include "png_source.hpp"
 
 namespace gravure::oiio {
 namespace {
@@ -211,6 +212,9 @@ Result<std::unique_ptr<ImageSource>> OiioOpener::open_unguarded(const std::strin
     return Error{ErrorCode::out_of_range, place(path, page) + ": the file has pages 0 to " + std::to_string(pages - 1)};
   }
   GRAVURE_TRY(HeaderFacts facts, read_facts(tiff_, path, page, kind));
+  if (kind == ImageKind::png) {
+    GRAVURE_CHECK(check_png_start(path));  // before OpenImageIO lets libpng print it
+  }
   GRAVURE_TRY(auto input, open_input(path, kind));
   const std::string where = place(path, page);
   if (!input->seek_subimage(static_cast<int>(page), 0)) {
@@ -231,9 +235,12 @@ Result<std::unique_ptr<ImageSource>> OiioOpener::open_unguarded(const std::strin
   info.samples = samples;
   info.rows_per_block = std::min(facts.rows_per_block, facts.height);
   info.random_access = facts.random_access;
-  info.decoder_bytes = facts.decoder_bytes + OiioSource::buffer_bytes(info, facts);
+  info.decoder_bytes = facts.decoder_bytes + (kind == ImageKind::png ? 0 : OiioSource::buffer_bytes(info, facts));
   info.x_dots_per_mm = facts.x_dots_per_mm ? facts.x_dots_per_mm : dots_per_mm(spec, "XResolution");
   info.y_dots_per_mm = facts.y_dots_per_mm ? facts.y_dots_per_mm : dots_per_mm(spec, "YResolution");
+  if (kind == ImageKind::png) {
+    return std::unique_ptr<ImageSource>(new PngSource(std::move(info)));
+  }
   return std::unique_ptr<ImageSource>(new OiioSource(std::move(input), std::move(info), facts));
 }
 

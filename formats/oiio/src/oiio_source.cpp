@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pack_bits.hpp"
+#include "row_request.hpp"
 
 namespace gravure::oiio {
 namespace {
@@ -46,36 +47,14 @@ std::int64_t OiioSource::buffer_bytes(const ImageInfo& info, const HeaderFacts& 
   return in_blocks(facts) ? info.rows_per_block * row : std::max(kRowsBytes, row);
 }
 
-std::string OiioSource::place() const {
-  return info_.path + ": page " + std::to_string(info_.page) + ": ";
-}
-
-Error OiioSource::damage(std::int64_t first_row, std::int64_t row_count) const {
-  std::string reason = input_->geterror();
-  std::replace(reason.begin(), reason.end(), '\n', ' ');
-  return {ErrorCode::bad_file, place() + "row " + std::to_string(first_row) + " to " +
-                                   std::to_string(first_row + row_count - 1) +
-                                   ": the image data are damaged or truncated; copy or export the file again" +
-                                   (reason.empty() ? "" : " (" + reason + ")")};
-}
-
 Result<void> OiioSource::read_rows(std::int64_t first_row, std::int64_t row_count, std::span<std::byte> out) {
-  if (first_row < 0 || row_count < 0 || row_count > info_.height || first_row > info_.height - row_count) {
-    return Error{ErrorCode::out_of_range, place() + "rows " + std::to_string(first_row) + " + " +
-                                              std::to_string(row_count) + " asked for: it has rows 0 to " +
-                                              std::to_string(info_.height - 1)};
-  }
-  if (out.size() < static_cast<std::size_t>(row_count * row_bytes_)) {
-    return Error{ErrorCode::bad_argument, place() + "the buffer for " + std::to_string(row_count) + " rows holds " +
-                                              std::to_string(out.size()) + " bytes, " +
-                                              std::to_string(row_count * row_bytes_) + " are needed"};
-  }
+  GRAVURE_CHECK(check_rows(info_, first_row, row_count, out.size()));
   try {
     return read_unguarded(first_row, row_count, out.data());
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::io, place() + "out of memory while reading: lower --memory or --threads"};
+    return Error{ErrorCode::io, place_of(info_) + "out of memory while reading: lower --memory or --threads"};
   } catch (const std::exception& failure) {
-    return Error{ErrorCode::bad_file, place() + "cannot be read: " + failure.what()};
+    return Error{ErrorCode::bad_file, place_of(info_) + "cannot be read: " + failure.what()};
   }
 }
 
@@ -98,7 +77,7 @@ Result<void> OiioSource::read_scan_lines(std::int64_t first_row, std::int64_t ro
     const std::int64_t rows = std::min(at_once, row_count - done);
     std::byte* const target = direct ? out + done * row_bytes_ : rows_.data();
     if (!read_native(row, rows, target)) {
-      return damage(row, rows);
+      return damaged_rows(info_, row, rows, input_->geterror());
     }
     GRAVURE_CHECK(deliver(target, row, rows, out + done * row_bytes_));
     done += rows;
@@ -133,7 +112,7 @@ Result<void> OiioSource::fill_band(std::int64_t index) {
                                                 0, 1, 0, 1, delivered_type(info_.samples), band_.data())
                            : read_native(first, rows, band_.data());
   if (!read) {
-    return damage(first, rows);
+    return damaged_rows(info_, first, rows, input_->geterror());
   }
   band_index_ = index;
   return {};
@@ -161,8 +140,8 @@ Result<void> OiioSource::check_finite(const std::byte* out, std::int64_t first_r
     std::uint32_t bits = 0;
     std::memcpy(&bits, out + i * 4, 4);
     if ((bits & 0x7F800000U) == 0x7F800000U) {
-      return Error{ErrorCode::bad_file, place() + "row " + std::to_string(first_row + i / info_.width) + ", column " +
-                                            std::to_string(i % info_.width) +
+      return Error{ErrorCode::bad_file, place_of(info_) + "row " + std::to_string(first_row + i / info_.width) +
+                                            ", column " + std::to_string(i % info_.width) +
                                             ": the sample is not a finite number: a depth map has a depth everywhere; "
                                             "fill the gap"};
     }

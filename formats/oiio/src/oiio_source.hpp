@@ -31,8 +31,6 @@ class OiioSource final : public ImageSource {
   /// Rows as OpenImageIO gives them become rows as ImageSource promises them.
   Result<void> deliver(const std::byte* rows, std::int64_t first_row, std::int64_t row_count, std::byte* out) const;
   Result<void> check_finite(const std::byte* out, std::int64_t first_row, std::int64_t row_count) const;
-  Error damage(std::int64_t first_row, std::int64_t row_count) const;
-  std::string place() const;
 
   std::unique_ptr<OIIO::ImageInput> input_;
   ImageInfo info_;

@@ -66,8 +66,8 @@ Result<HeaderFacts> read_ihdr(const std::string& path, std::string_view ihdr) {
                               " pixels: PNG is read up to " + std::to_string(kMaxPngSide) + " a side; save it as TIFF");
   }
   facts.random_access = false;
-  const std::int64_t row_bytes = facts.width * (facts.bits == 16 ? 2 : 1);  // bits come as bytes
-  facts.decoder_bytes = kLibraryBytes + 6 * row_bytes;  // this row and the last one, in two libraries
+  const std::int64_t row_bytes = (facts.width * facts.bits + 7) / 8;
+  facts.decoder_bytes = kLibraryBytes + 4 * row_bytes;  // this row and the last one in libpng, a row passed over
   return facts;
 }
 

@@ -84,6 +84,49 @@ TEST_F(ImportRefuses, PngWithAnyDamagedChunk) {
   expect_refused("a.png", "reaches beyond the end of the file");
 }
 
+/// Chunks with right checksums whose contents are damaged: what libpng would print is in the error, nowhere else.
+TEST_F(ImportRefuses, PngOfDamagedDataWithoutAWordOfLibpng) {
+  RawPng png;
+  png.height = 200;
+  for (int i = 0; i < 400; ++i) {
+    png.rows += static_cast<char>(i * 37 + i / 7);
+  }
+  const std::string good = png_file(png);
+  const std::size_t idat = good.find("IDAT");
+  const std::string packed = good.substr(idat + 4, good.size() - 12 - 4 - idat - 4);
+  const auto with_data = [&](const std::string& data) {
+    return good.substr(0, idat - 4) + png_chunk("IDAT", data) + png_chunk("IEND", "");
+  };
+  const auto read = [&](const std::string& bytes) {
+    put_file(folder_ / "a.png", bytes);
+    std::vector<std::byte> rows(400);
+    testing::internal::CaptureStderr();
+    const auto source = files_.open(folder_ / "a.png", 0);
+    const Result<void> done = source ? source.value()->read_rows(0, 200, rows) : Result<void>(source.error());
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    return done ? std::string() : done.error().message;
+  };
+  EXPECT_EQ(read(good), "");
+  EXPECT_EQ(read(with_data(packed + "more")), "") << "what follows the picture is not of it";
+  for (const auto& [bytes, words] :
+       {std::pair{good.substr(0, good.size() / 2), "reaches beyond the end of the file"},
+        {with_data(packed.substr(0, packed.size() / 2)), "(Not enough image data)"},
+        {with_data(packed.substr(0, packed.size() - 4) + "abcd"), "(IDAT: incorrect data check)"},
+        {with_data("\x78\x9c\xff\xff\xff"), "row 0: the image data are damaged or truncated; copy or export the file"},
+        {good.substr(0, idat - 4) + png_chunk("IEND", ""), "IEND: out of place"},
+        {good.substr(0, idat - 4) + png_chunk("ABCD", "") + good.substr(idat - 4), "unhandled critical chunk"}}) {
+    EXPECT_NE(read(bytes).find(words), std::string::npos) << words << " is not in: " << read(bytes);
+  }
+  put_file(folder_ / "a.png", with_data(packed.substr(0, packed.size() / 2)));
+  const auto source = files_.open(folder_ / "a.png", 0);
+  ASSERT_TRUE(source) << source.error().message;
+  std::vector<std::byte> row(2);
+  EXPECT_TRUE(source.value()->read_rows(3, 1, row)) << "rows before the damage are whole";
+  EXPECT_FALSE(source.value()->read_rows(199, 1, row));
+  EXPECT_TRUE(source.value()->read_rows(3, 1, row)) << "also after a refusal";
+  EXPECT_EQ(row[0], static_cast<std::byte>(png.rows[6]));
+}
+
 TEST_F(ImportRefuses, PngThatDeclareMoreThanTheyHold) {
   RawPng png;
   png.rows = std::string(1, '\0');
