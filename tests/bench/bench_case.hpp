@@ -23,11 +23,12 @@ struct Picture {
   std::int64_t height = 27489;
   LinesAlong along = LinesAlong::rows;
   SampleType samples = SampleType::bit;
-  std::int64_t levels = 0;  ///< slices of a map; 0: a layer
+  std::int64_t levels = 0;   ///< slices of a map; 0: a layer
+  std::int64_t repeats = 1;  ///< layers that all show this picture, each decoded for itself
 
   std::int64_t lines() const { return along == LinesAlong::rows ? height : width; }
   std::int64_t pixels() const { return along == LinesAlong::rows ? width : height; }
-  std::int64_t layers() const { return levels > 0 ? levels : 1; }
+  std::int64_t layers() const { return levels > 0 ? levels : repeats; }
   std::int64_t line_bytes() const { return (pixels() + 7) / 8; }
 };
 
@@ -47,11 +48,11 @@ inline void must(const Result<void>& result) {
   }
 }
 
-/// Takes chunks and throws them away: compiling without writing.
+/// Takes chunks as large as those of a program file and throws them away: compiling without writing.
 class NullSink final : public LineSink {
  public:
   explicit NullSink(std::int64_t line_bytes) : line_bytes_(line_bytes) {}
-  std::int64_t lines_per_chunk() const noexcept override { return (std::int64_t{1} << 20) / line_bytes_; }
+  std::int64_t lines_per_chunk() const noexcept override { return (std::int64_t{1} << 18) / line_bytes_; }
   Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const override {
     benchmark::DoNotOptimize(lines.data());
     return StoredChunk{address, {}, 0, 0, 0};
@@ -95,7 +96,7 @@ inline Case case_of(const Picture& picture) {
     made.header.layers.back().level = picture.levels > 0 ? layer : 0;
     made.header.layers.back().starts_reverse = line_is_reverse(made.header.plan, layer, 0);
     made.header.layer_of_revolution.push_back(static_cast<std::uint32_t>(layer));
-    made.stack.layers.push_back({picture.path, 0, layer});
+    made.stack.layers.push_back({picture.path, 0, made.header.layers.back().level});
   }
   made.stack.lines = picture.lines();
   made.stack.pixels = picture.pixels();

@@ -1,7 +1,9 @@
 // One step of the table that tests/bench/run prints, in a process of its own, so that its peak of memory is its own:
 //   gravure_table_step pictures FOLDER                 writes the pictures and prints their names
-//   gravure_table_step STEP FILE WORK SECONDS          repeats a step after a warm-up; prints CPU ms of one, peak MiB
-//   gravure_table_step growth GPX sparse|dense rows|columns    a generated picture through the compiler
+//   gravure_table_step STEP FILE WORK SECONDS          repeats a step after a warm-up; prints CPU ms of one, peak MiB,
+//   wall ms of one gravure_table_step slices FILE OUT                 slices of a map in memory; the lines of all of
+//   them go to OUT gravure_table_step growth GPX sparse|dense rows|columns    a generated picture through the compiler
+//   gravure_table_step roller FILE                     a BigTIFF of 188,496 x 200,000 pixels, one metre of a roller
 //   gravure_table_step bits FILE OUT                   the lines of a program, or the rows of a bilevel TIFF, as they
 //   are
 // docs/benchmarks.md has the method.
@@ -37,6 +39,7 @@ constexpr std::uint32_t kWidth = 3500;
 constexpr std::uint32_t kHeight = 27489;
 constexpr std::size_t kRowBytes = (kWidth + 7) / 8;
 constexpr std::int64_t kSlices = 10;
+constexpr std::int64_t kStack = 10;
 
 [[noreturn]] void stop(const std::string& why) {
   std::cerr << why << "\n";
@@ -128,6 +131,38 @@ void write_bits(const std::string& path, const Form& form, Bytes bits) {
   TIFFClose(tiff);
 }
 
+/// The walls of the cells again and again across and around a roller of 300 mm, one metre wide, at 5 um.
+void write_roller(const std::string& path) {
+  constexpr std::uint32_t kAcross = 200'000;
+  constexpr std::uint32_t kAround = 188'496;
+  constexpr std::uint32_t kRows = 64;
+  constexpr std::size_t kBytes = kAcross / 8;
+  constexpr std::size_t kWhole = kWidth / 8;  // of a row of the cells
+  const Bytes cells = draw(Kind::dense);
+  TIFF* tiff = TIFFOpen(path.c_str(), "w8");
+  if (tiff == nullptr) {
+    stop(path + ": cannot write");
+  }
+  set_common(tiff, {"none", COMPRESSION_NONE}, 1);
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, kAcross);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, kAround);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, kRows);
+  Bytes strip(kBytes * kRows);
+  for (std::uint32_t y = 0; y < kAround; y += kRows) {
+    const std::uint32_t rows = std::min(kRows, kAround - y);
+    for (std::uint32_t row = 0; row < rows; ++row) {
+      const std::byte* from = &cells[(y + row) % kHeight * kRowBytes];
+      for (std::size_t at = 0; at < kBytes; at += kWhole) {
+        std::memcpy(&strip[row * kBytes + at], from, std::min(kWhole, kBytes - at));
+      }
+    }
+    if (TIFFWriteEncodedStrip(tiff, y / kRows, strip.data(), static_cast<tmsize_t>(rows * kBytes)) < 0) {
+      stop(path + ": cannot write");
+    }
+  }
+  TIFFClose(tiff);
+}
+
 template <class Sample>
 void write_grey(const std::string& path, const Form& form) {
   TIFF* tiff = TIFFOpen(path.c_str(), "w");
@@ -144,7 +179,8 @@ void write_grey(const std::string& path, const Form& form) {
   TIFFClose(tiff);
 }
 
-/// Names are KIND_FORM[.columns].tif; the rest of this program and tests/bench/table know a file by its name.
+/// Names are KIND_FORM.tif; the rest of this program and tests/bench/table know a file by its name, to which `.columns`
+/// (lines along columns) or `.stack` (ten layers of it) may be added.
 void write_pictures(const fs::path& folder) {
   const std::pair<const char*, Kind> kinds[] = {
       {"sparse", Kind::sparse}, {"dense", Kind::dense}, {"screened", Kind::screened}};
@@ -175,10 +211,12 @@ void write_pictures(const fs::path& folder) {
 }
 
 Picture picture_of(const std::string& file) {
-  const std::string columns = ".columns";
-  const bool turned = file.size() > columns.size() && file.ends_with(columns);
+  const std::string suffix = fs::path(file).extension().string();
+  const bool turned = suffix == ".columns";
+  const bool stack = suffix == ".stack";
   Picture picture;
-  picture.path = turned ? file.substr(0, file.size() - columns.size()) : file;
+  picture.path = turned || stack ? file.substr(0, file.size() - suffix.size()) : file;
+  picture.repeats = stack ? kStack : 1;
   picture.width = kWidth;
   picture.height = kHeight;
   picture.along = turned ? LinesAlong::columns : LinesAlong::rows;
@@ -225,6 +263,29 @@ void decode(const std::string& path, const Pieces& take) {
   TIFFClose(tiff);
 }
 
+void decode_layers(const Picture& picture, const Pieces& take) {
+  for (std::int64_t layer = 0; layer < picture.repeats; ++layer) {
+    decode(picture.path, take);
+  }
+}
+
+/// Our reader alone, asked for as many rows at a time as the loop above gets.
+void read_layers(const Picture& picture) {
+  static const ImageFiles files;
+  constexpr std::int64_t kRows = 64;
+  for (std::int64_t layer = 0; layer < picture.repeats; ++layer) {
+    const std::unique_ptr<ImageSource> source = must(files.open(picture.path, 0));
+    static Bytes buffer;
+    buffer.resize(static_cast<std::size_t>(kRows * row_bytes(picture.samples, picture.width)));
+    for (std::int64_t row = 0; row < picture.height; row += kRows) {
+      const std::int64_t now = std::min(kRows, picture.height - row);
+      const auto bytes = static_cast<std::size_t>(now * row_bytes(picture.samples, picture.width));
+      must(source->read_rows(row, now, std::span(buffer).first(bytes)));
+      benchmark::DoNotOptimize(buffer.data());
+    }
+  }
+}
+
 /// Rewrites a file whose pages are there already: the least that storing bits can cost.
 class Rewriter {
  public:
@@ -252,11 +313,11 @@ void write_alone(const Picture& picture, const std::string& work) {
   }
 }
 
-void compile_picture(const Picture& picture, LineSink& sink) {
+void compile_picture(const Picture& picture, LineSink& sink, int threads = 1) {
   static const ImageFiles files;
   Case made = case_of(picture);
   CompileOptions options;
-  options.threads = 1;
+  options.threads = threads;
   must(compile(std::move(made.header), made.stack, files, sink, options));
 }
 
@@ -270,7 +331,10 @@ void compile_to_file(const Picture& picture, const std::string& work, GrvOptions
 
 std::function<void()> step_named(const std::string& step, const Picture& picture, const std::string& work) {
   if (step == "decode") {
-    return [=] { decode(picture.path, [](std::span<const std::byte>) {}); };
+    return [=] { decode_layers(picture, [](std::span<const std::byte>) {}); };
+  }
+  if (step == "read") {
+    return [=] { read_layers(picture); };
   }
   if (step == "write") {
     return [=] { write_alone(picture, work); };
@@ -278,13 +342,13 @@ std::function<void()> step_named(const std::string& step, const Picture& picture
   if (step == "decode+write") {
     return [=] {
       Rewriter out(work);
-      decode(picture.path, [&](std::span<const std::byte> bytes) { out.put(bytes); });
+      decode_layers(picture, [&](std::span<const std::byte> bytes) { out.put(bytes); });
     };
   }
-  if (step == "compile") {
+  if (step == "compile" || step == "compile@2") {
     return [=] {
       NullSink sink(picture.line_bytes());
-      compile_picture(picture, sink);
+      compile_picture(picture, sink, step == "compile" ? 1 : 2);
     };
   }
   if (step == "compile+write") {
@@ -313,21 +377,113 @@ double peak_mib() {
   stop("/proc/self/status does not tell VmHWM");
 }
 
+double wall_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
 void repeat(const std::function<void()>& step, double seconds) {
   constexpr double kLongMs = 150;  // beside this, what a first run costs more is nothing
-  const double before = cpu_ms();
+  double start = cpu_ms();
+  double wall = wall_ms();
+  int times = 1;
   step();
-  if (cpu_ms() - before > kLongMs) {
-    std::printf("%.3f %.0f\n", cpu_ms() - before, peak_mib());
-    return;
+  if (cpu_ms() - start <= kLongMs) {
+    start = cpu_ms();
+    wall = wall_ms();
+    times = 0;
+    do {
+      step();
+      ++times;
+    } while (cpu_ms() - start < 1e3 * seconds);
   }
-  const double start = cpu_ms();
-  int times = 0;
-  do {
-    step();
-    ++times;
-  } while (cpu_ms() - start < 1e3 * seconds);
-  std::printf("%.3f %.0f\n", (cpu_ms() - start) / times, peak_mib());
+  std::printf("%.3f %.0f %.3f\n", (cpu_ms() - start) / times, peak_mib(), (wall_ms() - wall) / times);
+}
+
+// ---- slices
+
+/// A map that is in memory already.
+class HeldRows final : public ImageSource {
+ public:
+  HeldRows(ImageInfo info, const Bytes& samples) : info_(std::move(info)), samples_(samples) {}
+  const ImageInfo& info() const noexcept override { return info_; }
+  Result<void> read_rows(std::int64_t first_row, std::int64_t row_count, std::span<std::byte> out) override {
+    const auto row = static_cast<std::size_t>(row_bytes(info_.samples, info_.width));
+    std::memcpy(out.data(), samples_.data() + static_cast<std::size_t>(first_row) * row,
+                static_cast<std::size_t>(row_count) * row);
+    return {};
+  }
+
+ private:
+  ImageInfo info_;
+  const Bytes& samples_;
+};
+
+class HeldImage final : public ImageOpener {
+ public:
+  explicit HeldImage(const Picture& picture) {
+    info_.path = picture.path;
+    info_.width = picture.width;
+    info_.height = picture.height;
+    info_.samples = picture.samples;
+    decode(picture.path,
+           [this](std::span<const std::byte> rows) { samples_.insert(samples_.end(), rows.begin(), rows.end()); });
+  }
+  Result<std::int64_t> count_pages(const std::string&) const override { return std::int64_t{1}; }
+  Result<std::unique_ptr<ImageSource>> open(const std::string&, std::int64_t) const override {
+    return std::unique_ptr<ImageSource>(std::make_unique<HeldRows>(info_, samples_));
+  }
+
+ private:
+  ImageInfo info_;
+  Bytes samples_;
+};
+
+/// Keeps the lines of all layers, for a comparison with what another program makes of the same map.
+class KeepingSink final : public LineSink {
+ public:
+  KeepingSink(std::int64_t lines, std::int64_t line_bytes) : lines_(lines), line_bytes_(line_bytes) {}
+  std::int64_t lines_per_chunk() const noexcept override { return (std::int64_t{1} << 18) / line_bytes_; }
+  Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const override {
+    return StoredChunk{address, {lines.begin(), lines.end()}, 0, 0, 0};
+  }
+  Result<void> put(const StoredChunk& chunk) override {
+    const auto layer = static_cast<std::size_t>(chunk.address.layer * lines_ * line_bytes_);
+    const auto at = layer + static_cast<std::size_t>(chunk.address.chunk * lines_per_chunk() * line_bytes_);
+    bits_.resize(std::max(bits_.size(), at + chunk.bytes.size()));
+    std::copy(chunk.bytes.begin(), chunk.bytes.end(), bits_.begin() + static_cast<std::ptrdiff_t>(at));
+    return {};
+  }
+  Result<void> finish(const ProgramHeader&) override { return {}; }
+  const Bytes& bits() const { return bits_; }
+
+ private:
+  std::int64_t lines_;
+  std::int64_t line_bytes_;
+  Bytes bits_;
+};
+
+/// Slices of a map that is in memory, placed and dropped; before that the lines of all of them go to `out` once.
+void slice_held(const Picture& picture, const std::string& out) {
+  const HeldImage image(picture);
+  const auto run = [&](LineSink& sink) {
+    Case made = case_of(picture);
+    CompileOptions options;
+    options.threads = 1;
+    must(compile(std::move(made.header), made.stack, image, sink, options));
+  };
+  KeepingSink kept(picture.lines(), picture.line_bytes());
+  run(kept);
+  std::ofstream(out, std::ios::binary)
+      .write(reinterpret_cast<const char*>(kept.bits().data()), static_cast<std::streamsize>(kept.bits().size()));
+  constexpr double kSeconds = 0.2;
+  repeat(
+      [&] {
+        NullSink sink(picture.line_bytes());
+        run(sink);
+      },
+      kSeconds);
 }
 
 // ---- growth
@@ -467,6 +623,10 @@ int main(int argc, char** argv) {
     write_pictures(given[1]);
   } else if (given.size() == 4 && given[0] == "growth") {
     grow(std::stod(given[1]), given[2] == "dense", given[3] == "columns");
+  } else if (given.size() == 3 && given[0] == "slices") {
+    slice_held(picture_of(given[1]), given[2]);
+  } else if (given.size() == 2 && given[0] == "roller") {
+    write_roller(given[1]);
   } else if (given.size() == 3 && given[0] == "bits") {
     dump(given[1], given[2]);
   } else if (given.size() == 4) {
