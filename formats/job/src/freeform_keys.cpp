@@ -2,10 +2,12 @@
 
 #include <numbers>
 
+#include "src/key_rows.hpp"
+
 namespace gravure::freeform_file {
 namespace {
 
-using Store = void (*)(FreeformJob&, const Value&);
+using Store = KeyRows<FreeformJob>::Store;
 using Bound = std::optional<double> GivenBounds::*;
 
 constexpr std::array kSections =
@@ -15,41 +17,20 @@ constexpr std::array<std::string_view, 1> kParents = {"axis"};
 constexpr std::array<std::string_view, 1> kModes = {"freeform"};
 constexpr std::array<std::string_view, 2> kFires = {"white", "black"};
 
-constexpr std::string_view kBiggestHz = "10_000_000_000";
-constexpr std::string_view kLeast = "0.000_001";
 constexpr std::string_view kMostUm = "1_000_000_000";
 constexpr std::string_view kMostMm = "1_000_000";
 constexpr std::string_view kMostPlaceMm = "10_000";
 constexpr std::string_view kOneSurface = "one of expression, height_field, mesh";
 constexpr std::string_view kOneTexture = "one of hilbert_order, path, svg, bitmap";
 constexpr std::string_view kTableOne = "that of [A] table 1";
-constexpr std::string_view kMostSpeed = "1_000_000_000";
-constexpr std::string_view kMostAcceleration = "1_000_000_000_000";
-constexpr std::string_view kMostJerk = "1_000_000_000_000_000_000";
 
-constexpr Key integer(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
-                      std::string_view high, std::string_view fallback, Store store) {
-  return {{section, key, Type::integer, unit, low, high, {}, presence_of(fallback), fallback}, store};
-}
+constexpr auto integer = KeyRows<FreeformJob>::integer;
+constexpr auto word = KeyRows<FreeformJob>::word;
+constexpr auto other = KeyRows<FreeformJob>::other;
 
 constexpr Key decimal(std::string_view section, std::string_view key, std::string_view unit, std::string_view high,
-                      std::string_view fallback, Store store, std::string_view low = kLeast) {
-  return {{section, key, Type::decimal, unit, low, high, {}, presence_of(fallback), fallback}, store};
-}
-
-constexpr Key word(std::string_view section, std::string_view key, std::span<const std::string_view> words,
-                   std::string_view fallback, Store store) {
-  return {{section, key, Type::word, "", "", "", words, presence_of(fallback), fallback}, store};
-}
-
-constexpr Key text(std::string_view section, std::string_view key, Type type, std::string_view fallback, Store store) {
-  return {{section, key, type, "", "", "", {}, presence_of(fallback), fallback}, store};
-}
-
-/// The same key, present or not as other keys decide.
-constexpr Key decided(Key key) {
-  key.presence = Presence::decided;
-  return key;
+                      std::string_view fallback, Store store, std::string_view low = kLeastAboveZero) {
+  return KeyRows<FreeformJob>::decimal(section, key, unit, low, high, fallback, store);
 }
 
 template <std::size_t axis, Bound bound>
@@ -93,7 +74,7 @@ constexpr Bound kAcceleration = &GivenBounds::acceleration;
 constexpr Bound kJerk = &GivenBounds::jerk;
 
 constexpr std::array kTable = {
-    text("job", "title", Type::title, "\"\"", [](FreeformJob& j, const Value& v) { j.job.title = v.text; }),
+    other("job", "title", Type::title, "\"\"", [](FreeformJob& j, const Value& v) { j.job.title = v.text; }),
     word("job", "mode", kModes, kRequired, [](FreeformJob& j, const Value&) { j.job.mode = Mode::freeform; }),
 
     integer("laser", "seed_hz", "Hz", "1", kBiggestHz, kRequired,
@@ -106,12 +87,12 @@ constexpr std::array kTable = {
     integer("fpga", "clock_multiplier", "FPGA ticks per seed pulse", "1", "16", kRequired,
             [](FreeformJob& j, const Value& v) { j.job.fpga.clock_multiplier = v.integer; }),
 
-    decided(text("surface", "expression", Type::text, kOneSurface,
-                 [](FreeformJob& j, const Value& v) { j.texture.surface = v.text; })),
-    decided(text("surface", "height_field", Type::path, kOneSurface,
-                 [](FreeformJob& j, const Value& v) { j.texture.height_field = v.text; })),
-    decided(text("surface", "mesh", Type::path, kOneSurface,
-                 [](FreeformJob& j, const Value& v) { j.texture.mesh = v.text; })),
+    decided(other("surface", "expression", Type::text, kOneSurface,
+                  [](FreeformJob& j, const Value& v) { j.texture.surface = v.text; })),
+    decided(other("surface", "height_field", Type::path, kOneSurface,
+                  [](FreeformJob& j, const Value& v) { j.texture.height_field = v.text; })),
+    decided(other("surface", "mesh", Type::path, kOneSurface,
+                  [](FreeformJob& j, const Value& v) { j.texture.mesh = v.text; })),
     decided(decimal("surface", "pixel_um", "um", kMostUm, "required with height_field",
                     [](FreeformJob& j, const Value& v) { j.texture.pixel_um = to_double(v.number); })),
     decimal("surface", "pixel_y_um", "um", kMostUm, "pixel_um",
@@ -131,12 +112,12 @@ constexpr std::array kTable = {
 
     decided(integer("texture", "hilbert_order", "", "1", "10", kOneTexture,
                     [](FreeformJob& j, const Value& v) { j.texture.hilbert_order = static_cast<int>(v.integer); })),
-    decided(text("texture", "path", Type::path, kOneTexture,
-                 [](FreeformJob& j, const Value& v) { j.texture.path = v.text; })),
-    decided(text("texture", "svg", Type::path, kOneTexture,
-                 [](FreeformJob& j, const Value& v) { j.texture.svg = v.text; })),
-    decided(text("texture", "bitmap", Type::path, kOneTexture,
-                 [](FreeformJob& j, const Value& v) { j.texture.bitmap = v.text; })),
+    decided(other("texture", "path", Type::path, kOneTexture,
+                  [](FreeformJob& j, const Value& v) { j.texture.path = v.text; })),
+    decided(other("texture", "svg", Type::path, kOneTexture,
+                  [](FreeformJob& j, const Value& v) { j.texture.svg = v.text; })),
+    decided(other("texture", "bitmap", Type::path, kOneTexture,
+                  [](FreeformJob& j, const Value& v) { j.texture.bitmap = v.text; })),
     decimal("texture", "pitch_um", "um", kMostUm, kRequired,
             [](FreeformJob& j, const Value& v) { j.texture.pitch_um = to_double(v.number); }),
     decimal("texture", "size_mm", "mm", kMostPlaceMm, "40",
@@ -252,9 +233,7 @@ bool section_is_required(std::string_view section) {
 }
 
 const Key* find_key(std::string_view section, std::string_view key) {
-  const auto found = std::find_if(kTable.begin(), kTable.end(),
-                                  [&](const Key& spec) { return spec.section == section && spec.key == key; });
-  return found == kTable.end() ? nullptr : &*found;
+  return row_of(key_table(), section, key);
 }
 
 }  // namespace gravure::freeform_file
@@ -262,12 +241,7 @@ const Key* find_key(std::string_view section, std::string_view key) {
 namespace gravure {
 
 std::vector<JobKey> freeform_job_keys() {
-  std::vector<JobKey> keys;
-  for (const freeform_file::Key& spec : freeform_file::key_table()) {
-    keys.push_back({std::string(spec.section), std::string(spec.key), type_name(spec.type), std::string(spec.unit),
-                    job_file::range_text(spec), std::string(spec.fallback)});
-  }
-  return keys;
+  return job_file::documented(freeform_file::key_table());
 }
 
 }  // namespace gravure

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "src/key_rows.hpp"
+
 namespace gravure::job_file {
 namespace {
-
-using Store = void (*)(Job&, const Value&);
 
 constexpr std::array kSections = std::to_array<std::string_view>({"job",
                                                                   "machine",
@@ -36,45 +36,20 @@ constexpr std::array<std::string_view, 2> kFires = {"white", "black"};
 constexpr std::array<std::string_view, 2> kLinesAlong = {"rows", "columns"};
 constexpr std::array<std::string_view, 3> kOrders = {"sequence", "cycle", "hold"};
 
-constexpr Key integer(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
-                      std::string_view high, std::string_view fallback, Store store) {
-  return {{section, key, Type::integer, unit, low, high, {}, presence_of(fallback), fallback}, store};
-}
+constexpr auto integer = KeyRows<Job>::integer;
+constexpr auto decimal = KeyRows<Job>::decimal;
+constexpr auto word = KeyRows<Job>::word;
+constexpr auto other = KeyRows<Job>::other;
 
-constexpr Key decimal(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
-                      std::string_view high, std::string_view fallback, Store store) {
-  return {{section, key, Type::decimal, unit, low, high, {}, presence_of(fallback), fallback}, store};
-}
-
-constexpr Key on_off(std::string_view section, std::string_view fallback, Store store) {
-  return {{section, "enabled", Type::boolean, "", "", "", {}, Presence::optional, fallback}, store};
-}
-
-constexpr Key word(std::string_view section, std::string_view key, std::span<const std::string_view> words,
-                   std::string_view fallback, Store store) {
-  return {{section, key, Type::word, "", "", "", words, presence_of(fallback), fallback}, store};
-}
-
-constexpr Key other(std::string_view section, std::string_view key, Type type, std::string_view fallback, Store store) {
-  return {{section, key, type, "", "", "", {}, presence_of(fallback), fallback}, store};
-}
-
-/// The same key, present or not as other keys decide.
-constexpr Key decided(Key spec) {
-  spec.presence = Presence::decided;
-  return spec;
+constexpr Key on_off(std::string_view section, std::string_view fallback, KeyRows<Job>::Store store) {
+  return other(section, "enabled", Type::boolean, fallback, store);
 }
 
 constexpr std::string_view kOneOfSizes = "one of diameter_mm, circumference_mm";
 constexpr std::string_view kOneOfPitches = "one of line_pitch_um, lines_per_revolution";
 constexpr std::string_view kOneOfImages = "one of files, depth_map";
-constexpr std::string_view kBiggestHz = "10_000_000_000";
 constexpr std::string_view kUnchecked = "not checked";
 constexpr std::string_view kNoRelief = "none: relief in pulses";
-constexpr std::string_view kMostJerk = "1_000_000_000_000_000_000";  // as the machine file has it
-constexpr std::string_view kMostAcceleration = "1_000_000_000_000";
-constexpr std::string_view kMostSpeed = "1_000_000_000";
-constexpr std::string_view kLeastMotion = "0.000_001";
 
 // Bounds keep every figure physical and every tick count far inside 64 bits where they are multiplied one by one;
 // make_plan() checks the products.
@@ -92,9 +67,9 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.laser.max_pulse_on_demand_hz = v.integer; }),
     decimal("laser", "spot_um", "um", "0.01", "10_000", kNoRelief,
             [](Job& j, const Value& v) { j.laser.spot_um = v.number; }),
-    decimal("laser", "fluence_j_cm2", "J/cm^2", kLeastMotion, "1_000_000", kNoRelief,
+    decimal("laser", "fluence_j_cm2", "J/cm^2", kLeastAboveZero, "1_000_000", kNoRelief,
             [](Job& j, const Value& v) { j.laser.fluence_j_cm2 = v.number; }),
-    decimal("laser", "threshold_j_cm2", "J/cm^2", kLeastMotion, "1_000_000", kNoRelief,
+    decimal("laser", "threshold_j_cm2", "J/cm^2", kLeastAboveZero, "1_000_000", kNoRelief,
             [](Job& j, const Value& v) { j.laser.threshold_j_cm2 = v.number; }),
     decimal("laser", "penetration_nm", "nm", "0.001", "1_000_000", kNoRelief,
             [](Job& j, const Value& v) { j.laser.penetration_nm = v.number; }),
@@ -127,11 +102,11 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.scanner.lag_us = v.number; }),
     other("scanner", "compensate_lag", Type::boolean, "true",
           [](Job& j, const Value& v) { j.scanner.compensate_lag = v.boolean; }),
-    decimal("scanner", "max_speed_mm_s", "mm/s", kLeastMotion, kMostSpeed, kUnchecked,
+    decimal("scanner", "max_speed_mm_s", "mm/s", kLeastAboveZero, kMostSpeed, kUnchecked,
             [](Job& j, const Value& v) { j.scanner.max_speed_mm_s = v.number; }),
-    decimal("scanner", "max_acceleration_mm_s2", "mm/s^2", kLeastMotion, kMostAcceleration, kUnchecked,
+    decimal("scanner", "max_acceleration_mm_s2", "mm/s^2", kLeastAboveZero, kMostAcceleration, kUnchecked,
             [](Job& j, const Value& v) { j.scanner.max_acceleration_mm_s2 = v.number; }),
-    decimal("scanner", "max_jerk_mm_s3", "mm/s^3", kLeastMotion, kMostJerk, kUnchecked,
+    decimal("scanner", "max_jerk_mm_s3", "mm/s^3", kLeastAboveZero, kMostJerk, kUnchecked,
             [](Job& j, const Value& v) { j.scanner.max_jerk_mm_s3 = v.number; }),
     other("scanner", "cross_scan_correction", Type::boolean, "true",
           [](Job& j, const Value& v) { j.scanner.cross_scan_correction = v.boolean; }),
@@ -163,11 +138,11 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.rotary.max_ab_hz = v.integer; }),
     decimal("rotary", "start_angle_deg", "deg", "-360", "360", "0",
             [](Job& j, const Value& v) { j.rotary.start_angle_deg = v.number; }),
-    decimal("rotary", "max_speed_deg_s", "deg/s", kLeastMotion, kMostSpeed, kUnchecked,
+    decimal("rotary", "max_speed_deg_s", "deg/s", kLeastAboveZero, kMostSpeed, kUnchecked,
             [](Job& j, const Value& v) { j.rotary.limits.max_speed = v.number; }),
-    decimal("rotary", "max_acceleration_deg_s2", "deg/s^2", kLeastMotion, kMostAcceleration, kUnchecked,
+    decimal("rotary", "max_acceleration_deg_s2", "deg/s^2", kLeastAboveZero, kMostAcceleration, kUnchecked,
             [](Job& j, const Value& v) { j.rotary.limits.max_acceleration = v.number; }),
-    decimal("rotary", "max_jerk_deg_s3", "deg/s^3", kLeastMotion, kMostJerk, kUnchecked,
+    decimal("rotary", "max_jerk_deg_s3", "deg/s^3", kLeastAboveZero, kMostJerk, kUnchecked,
             [](Job& j, const Value& v) { j.rotary.limits.max_jerk = v.number; }),
 
     decimal("carriage", "feed_pixels", "columns per turn", "0.001", "1_000_000", kRequired,
@@ -180,11 +155,11 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.carriage.interpolation_bits = static_cast<int>(v.integer); }),
     integer("carriage", "max_ab_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.carriage.max_ab_hz = v.integer; }),
-    decimal("carriage", "max_speed_mm_s", "mm/s", kLeastMotion, kMostSpeed, kUnchecked,
+    decimal("carriage", "max_speed_mm_s", "mm/s", kLeastAboveZero, kMostSpeed, kUnchecked,
             [](Job& j, const Value& v) { j.carriage.limits.max_speed = v.number; }),
-    decimal("carriage", "max_acceleration_mm_s2", "mm/s^2", kLeastMotion, kMostAcceleration, kUnchecked,
+    decimal("carriage", "max_acceleration_mm_s2", "mm/s^2", kLeastAboveZero, kMostAcceleration, kUnchecked,
             [](Job& j, const Value& v) { j.carriage.limits.max_acceleration = v.number; }),
-    decimal("carriage", "max_jerk_mm_s3", "mm/s^3", kLeastMotion, kMostJerk, kUnchecked,
+    decimal("carriage", "max_jerk_mm_s3", "mm/s^3", kLeastAboveZero, kMostJerk, kUnchecked,
             [](Job& j, const Value& v) { j.carriage.limits.max_jerk = v.number; }),
 
     integer("stage", "lines", "lines", "1", "1_000_000_000", kRequired,
@@ -197,11 +172,11 @@ constexpr std::array kTable = {
             [](Job& j, const Value& v) { j.stage.interpolation_bits = static_cast<int>(v.integer); }),
     integer("stage", "max_ab_hz", "Hz", "1", kBiggestHz, kRequired,
             [](Job& j, const Value& v) { j.stage.max_ab_hz = v.integer; }),
-    decimal("stage", "max_speed_mm_s", "mm/s", kLeastMotion, kMostSpeed, kUnchecked,
+    decimal("stage", "max_speed_mm_s", "mm/s", kLeastAboveZero, kMostSpeed, kUnchecked,
             [](Job& j, const Value& v) { j.stage.limits.max_speed = v.number; }),
-    decimal("stage", "max_acceleration_mm_s2", "mm/s^2", kLeastMotion, kMostAcceleration, kUnchecked,
+    decimal("stage", "max_acceleration_mm_s2", "mm/s^2", kLeastAboveZero, kMostAcceleration, kUnchecked,
             [](Job& j, const Value& v) { j.stage.limits.max_acceleration = v.number; }),
-    decimal("stage", "max_jerk_mm_s3", "mm/s^3", kLeastMotion, kMostJerk, kUnchecked,
+    decimal("stage", "max_jerk_mm_s3", "mm/s^3", kLeastAboveZero, kMostJerk, kUnchecked,
             [](Job& j, const Value& v) { j.stage.limits.max_jerk = v.number; }),
 
     decided(other("image", "files", Type::paths, kOneOfImages,
@@ -306,9 +281,7 @@ bool section_is_of(std::string_view section, Mode mode) {
 }
 
 const Key* find_key(std::string_view section, std::string_view key) {
-  const auto found = std::find_if(kTable.begin(), kTable.end(),
-                                  [&](const Key& spec) { return spec.section == section && spec.key == key; });
-  return found == kTable.end() ? nullptr : &*found;
+  return row_of(key_table(), section, key);
 }
 
 }  // namespace gravure::job_file

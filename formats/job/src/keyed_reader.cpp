@@ -29,6 +29,10 @@ void KeyedReader::read_section(const Section& section, Job& job, const Store& st
     violations_.add(section.at, bracketed(section.name) + ": unknown section" + advice.text);
     return;
   }
+  if (const std::string refusal = grammar_.refusal(section.name); !refusal.empty()) {
+    violations_.add(section.at, bracketed(section.name) + ": " + refusal);
+    return;
+  }
   job.places.emplace(section.name, section.at);
   for (const Entry& entry : section.entries) {
     job.places.emplace(section.name + "." + entry.key, entry.value.at);
@@ -52,7 +56,8 @@ void KeyedReader::read_entry(const Section& section, const Entry& entry, const S
 
 void KeyedReader::report_missing(std::string_view name) {
   const Section* section = document_.find(name);
-  if (section != nullptr ? !section->is_table : !grammar_.section_is_required(name)) {
+  const bool is_needless = section == nullptr && !grammar_.section_is_required(name);
+  if (is_needless || (section != nullptr && (!section->is_table || !grammar_.refusal(name).empty()))) {
     return;
   }
   std::string keys;
@@ -63,7 +68,8 @@ void KeyedReader::report_missing(std::string_view name) {
     const std::string path = std::string(name) + "." + std::string(key->key);
     if (section != nullptr && section->find(key->key) == nullptr && meant_.count(path) == 0) {
       violations_.add(section->at,
-                      bracketed(name) + " " + std::string(key->key) + " is missing: give " + expectation(*key));
+                      bracketed(name) + " " + std::string(key->key) + " is missing: give " + expectation(*key) +
+                          (key->key == "fires" ? ", the pixels that get a pulse; polarity is never assumed" : ""));
     }
     keys += (keys.empty() ? "" : ", ") + std::string(key->key);
   }

@@ -16,9 +16,11 @@ namespace gravure::job_file {
 struct JobGrammar {
   std::vector<const KeySpec*> keys;  ///< in the order of the documentation
   std::span<const std::string_view> sections;
-  bool (*section_is_required)(std::string_view section);
+  std::function<bool(std::string_view section)> section_is_required;
   /// Ends "section [x] is missing: it needs ...", from the names of its required keys.
   std::string (*needs)(std::string_view section, const std::string& keys);
+  /// Why a job may not have a section that the grammar knows; empty: it may.
+  std::function<std::string(std::string_view section)> refusal = [](std::string_view /*section*/) { return ""; };
 };
 
 /// Reads the sections and keys of a document by a grammar, gathering what is wrong; how keys go together is the

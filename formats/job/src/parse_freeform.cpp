@@ -36,15 +36,8 @@ std::string folder_of(const std::string& path) {
 
 Result<FreeformJob> parse_freeform_job(std::string_view text, const std::string& path) {
   using namespace freeform_file;
-  if (text.size() > kMaxJobBytes) {
-    return Error{ErrorCode::bad_file, path + ": " + std::to_string(text.size()) + " bytes: a job file has at most " +
-                                          std::to_string(kMaxJobBytes)};
-  }
-  const auto parsed = parse_toml(text, freeform_file::parent_names());
-  if (const auto* syntax = std::get_if<SyntaxError>(&parsed)) {
-    return Error{ErrorCode::bad_argument, place(path, syntax->at) + "not TOML: " + syntax->message};
-  }
-  const auto& document = std::get<Document>(parsed);
+  GRAVURE_TRY(const Document document,
+              read_document(text, path, "a job file", kMaxJobBytes, freeform_file::parent_names()));
   Violations violations;
   FreeformJob job = read_freeform(document, violations);
   if (!violations.empty()) {

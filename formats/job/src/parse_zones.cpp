@@ -1,5 +1,4 @@
 #include <string>
-#include <variant>
 
 #include "gravure/formats/job_file.hpp"
 #include "gravure/formats/zones_job.hpp"
@@ -67,15 +66,7 @@ ZonesJob read_zones(const Document& document, Violations& violations) {
 
 Result<ZonesJob> parse_zones_job(std::string_view text, const std::string& path) {
   using namespace zones_file;
-  if (text.size() > kMaxJobBytes) {
-    return Error{ErrorCode::bad_file, path + ": " + std::to_string(text.size()) + " bytes: a job file has at most " +
-                                          std::to_string(kMaxJobBytes)};
-  }
-  const auto parsed = parse_toml(text);
-  if (const auto* syntax = std::get_if<SyntaxError>(&parsed)) {
-    return Error{ErrorCode::bad_argument, place(path, syntax->at) + "not TOML: " + syntax->message};
-  }
-  const auto& document = std::get<Document>(parsed);
+  GRAVURE_TRY(const Document document, read_document(text, path, "a job file", kMaxJobBytes));
   Violations violations;
   ZonesJob job = read_zones(document, violations);
   if (!violations.empty()) {

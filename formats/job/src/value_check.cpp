@@ -101,8 +101,8 @@ class Check {
     const bool is_known = contains(spec_.words, value_.text);
     if (!is_known) {
       std::vector<Candidate> quoted;
-      for (const std::string_view word : spec_.words) {
-        quoted.push_back({word, "\"" + std::string(word) + "\""});
+      for (const std::string_view allowed : spec_.words) {
+        quoted.push_back({allowed, "\"" + std::string(allowed) + "\""});
       }
       violations_.add(value_.at, must_be() + suggest(value_.text, quoted).text);
     }

@@ -2,37 +2,22 @@
 
 #include <array>
 
+#include "src/key_rows.hpp"
+
 namespace gravure::zones_file {
 namespace {
-
-using Store = void (*)(ZonesJob&, const Value&);
 
 constexpr std::array kSections = std::to_array<std::string_view>(
     {"job", "contours", "zones", "beam", "laser", "fpga", "marking", "machine", "limits"});
 constexpr std::array<std::string_view, 1> kModes = {"zones"};
 constexpr std::array<std::string_view, 2> kMethods = {"cover", "kmeans"};
 
-constexpr std::string_view kLeast = "0.000_001";
 constexpr std::string_view kMost = "1_000_000";
 
-constexpr Key integer(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
-                      std::string_view high, std::string_view fallback, Store store) {
-  return {{section, key, Type::integer, unit, low, high, {}, presence_of(fallback), fallback}, store};
-}
-
-constexpr Key decimal(std::string_view section, std::string_view key, std::string_view unit, std::string_view low,
-                      std::string_view high, std::string_view fallback, Store store) {
-  return {{section, key, Type::decimal, unit, low, high, {}, presence_of(fallback), fallback}, store};
-}
-
-constexpr Key text(std::string_view section, std::string_view key, Type type, std::string_view fallback, Store store) {
-  return {{section, key, type, "", "", "", {}, presence_of(fallback), fallback}, store};
-}
-
-constexpr Key word(std::string_view section, std::string_view key, std::span<const std::string_view> words,
-                   std::string_view fallback, Store store) {
-  return {{section, key, Type::word, "", "", "", words, presence_of(fallback), fallback}, store};
-}
+constexpr auto integer = KeyRows<ZonesJob>::integer;
+constexpr auto decimal = KeyRows<ZonesJob>::decimal;
+constexpr auto word = KeyRows<ZonesJob>::word;
+constexpr auto other = KeyRows<ZonesJob>::other;
 
 /// Every job that has the section has the key.
 constexpr Key always(Key key) {
@@ -46,12 +31,12 @@ ZonesBeam& beam_of(ZonesJob& job) {
 }
 
 constexpr std::array kTable = {
-    text("job", "title", Type::title, "\"\"", [](ZonesJob& j, const Value& v) { j.job.title = v.text; }),
+    other("job", "title", Type::title, "\"\"", [](ZonesJob& j, const Value& v) { j.job.title = v.text; }),
     word("job", "mode", kModes, kRequired, [](ZonesJob& j, const Value&) { j.job.mode = Mode::zones; }),
 
-    text("contours", "file", Type::path, kRequired, [](ZonesJob& j, const Value& v) { j.contours = v.text; }),
-    text("contours", "transform", Type::path, "contours lie where they are",
-         [](ZonesJob& j, const Value& v) { j.transform = v.text; }),
+    other("contours", "file", Type::path, kRequired, [](ZonesJob& j, const Value& v) { j.contours = v.text; }),
+    other("contours", "transform", Type::path, "contours lie where they are",
+          [](ZonesJob& j, const Value& v) { j.transform = v.text; }),
 
     word("zones", "method", kMethods, "\"cover\"",
          [](ZonesJob& j, const Value& v) { j.by_kmeans = v.text == "kmeans"; }),
@@ -61,8 +46,7 @@ constexpr std::array kTable = {
             [](ZonesJob& j, const Value& v) { j.layer_mm = v.number; }),
     integer("zones", "k", "", "1", kMost, "the fewest that meet the limits",
             [](ZonesJob& j, const Value& v) { j.clusters = static_cast<std::size_t>(v.integer); }),
-    Key{{"zones", "normalised", Type::boolean, "", "", "", {}, Presence::optional, "true"},
-        [](ZonesJob& j, const Value& v) { j.normalised = v.boolean; }},
+    other("zones", "normalised", Type::boolean, "true", [](ZonesJob& j, const Value& v) { j.normalised = v.boolean; }),
     integer("zones", "seed", "", "0", "9_223_372_036_854_775_807", "1",
             [](ZonesJob& j, const Value& v) { j.seed = static_cast<std::uint64_t>(v.integer); }),
 
@@ -76,9 +60,9 @@ constexpr std::array kTable = {
                    [](ZonesJob& j, const Value& v) { beam_of(j).focal_length_mm = v.number; })),
     decimal("beam", "fluence_share", "", "0.01", "0.9999", "[zones] layer_mm",
             [](ZonesJob& j, const Value& v) { beam_of(j).fluence_share = v.number; }),
-    decimal("beam", "average_power_w", "W", kLeast, kMost, "no line widths",
+    decimal("beam", "average_power_w", "W", kLeastAboveZero, kMost, "no line widths",
             [](ZonesJob& j, const Value& v) { beam_of(j).average_power_w = v.number; }),
-    decimal("beam", "threshold_j_cm2", "J/cm^2", kLeast, kMost, "no line widths",
+    decimal("beam", "threshold_j_cm2", "J/cm^2", kLeastAboveZero, kMost, "no line widths",
             [](ZonesJob& j, const Value& v) { beam_of(j).threshold_j_cm2 = v.number; }),
 
     integer("laser", "seed_hz", "Hz", "1", "1_000_000_000_000", kRequired,
@@ -88,21 +72,21 @@ constexpr std::array kTable = {
     integer("fpga", "clock_multiplier", "", "1", "16", "2",
             [](ZonesJob& j, const Value& v) { j.job.fpga.clock_multiplier = v.integer; }),
 
-    decimal("marking", "pulse_pitch_um", "um", kLeast, kMost, kRequired,
+    decimal("marking", "pulse_pitch_um", "um", kLeastAboveZero, kMost, kRequired,
             [](ZonesJob& j, const Value& v) { j.pulse_pitch_um = v.number; }),
-    decimal("marking", "mark_speed_mm_s", "mm/s", kLeast, kMost, kRequired,
+    decimal("marking", "mark_speed_mm_s", "mm/s", kLeastAboveZero, kMost, kRequired,
             [](ZonesJob& j, const Value& v) { j.mark_speed_mm_s = v.number; }),
-    decimal("marking", "jump_speed_mm_s", "mm/s", kLeast, kMost, "as fast as the head can",
+    decimal("marking", "jump_speed_mm_s", "mm/s", kLeastAboveZero, kMost, "as fast as the head can",
             [](ZonesJob& j, const Value& v) { j.jump_speed_mm_s = v.number; }),
     decimal("marking", "servo_us", "us", "1", "100_000", "50",
             [](ZonesJob& j, const Value& v) { j.servo_us = v.number; }),
 
-    text("machine", "file", Type::path, "the example of `gravure zones plan`",
-         [](ZonesJob& j, const Value& v) { j.machine = v.text; }),
+    other("machine", "file", Type::path, "the example of `gravure zones plan`",
+          [](ZonesJob& j, const Value& v) { j.machine = v.text; }),
     decimal("machine", "field_mm", "mm", "0.001", "10_000", "the machine's",
             [](ZonesJob& j, const Value& v) { j.field_mm = v.number; }),
 
-    decimal("limits", "landing_um", "um", kLeast, kMost, "not judged",
+    decimal("limits", "landing_um", "um", kLeastAboveZero, kMost, "not judged",
             [](ZonesJob& j, const Value& v) { j.max_landing_um = v.number; }),
 };
 
@@ -125,12 +109,7 @@ bool section_is_required(std::string_view section) {
 namespace gravure {
 
 std::vector<JobKey> zones_job_keys() {
-  std::vector<JobKey> keys;
-  for (const zones_file::Key& spec : zones_file::key_table()) {
-    keys.push_back({std::string(spec.section), std::string(spec.key), type_name(spec.type), std::string(spec.unit),
-                    job_file::range_text(spec), std::string(spec.fallback)});
-  }
-  return keys;
+  return job_file::documented(zones_file::key_table());
 }
 
 }  // namespace gravure

@@ -3,7 +3,6 @@
 #include <set>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "gravure/core/file_output.hpp"
 #include "gravure/formats/machine_file.hpp"
@@ -312,15 +311,7 @@ std::map<std::string, Rational, std::less<>> numbers_of(const Document& document
 
 Result<MachineFile> parse_machine_file(std::string_view text, const std::string& path) {
   using namespace machine_file;
-  if (text.size() > kMaxMachineBytes) {
-    return Error{ErrorCode::bad_file, path + ": " + std::to_string(text.size()) +
-                                          " bytes: a machine file has at most " + std::to_string(kMaxMachineBytes)};
-  }
-  const auto parsed = parse_toml(text);
-  if (const auto* syntax = std::get_if<SyntaxError>(&parsed)) {
-    return Error{ErrorCode::bad_argument, place(path, syntax->at) + "not TOML: " + syntax->message};
-  }
-  const auto& document = std::get<Document>(parsed);
+  GRAVURE_TRY(const Document document, read_document(text, path, "a machine file", kMaxMachineBytes));
   Reader reader(document);
   kinematics::Machine machine = reader.read();
   if (!reader.violations().empty()) {

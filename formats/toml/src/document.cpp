@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "gravure/core/byte_order_mark.hpp"
 
@@ -255,6 +256,19 @@ std::variant<Document, SyntaxError> parse_toml(std::string_view text, std::span<
   }
   sort_by_place(document.sections);
   return document;
+}
+
+Result<Document> read_document(std::string_view text, const std::string& path, std::string_view what,
+                               std::size_t most_bytes, std::span<const std::string_view> parents) {
+  if (text.size() > most_bytes) {
+    return Error{ErrorCode::bad_file, path + ": " + std::to_string(text.size()) + " bytes: " + std::string(what) +
+                                          " has at most " + std::to_string(most_bytes)};
+  }
+  auto parsed = parse_toml(text, parents);
+  if (const auto* syntax = std::get_if<SyntaxError>(&parsed)) {
+    return Error{ErrorCode::bad_argument, place(path, syntax->at) + "not TOML: " + syntax->message};
+  }
+  return std::get<Document>(std::move(parsed));
 }
 
 }  // namespace gravure::toml_file

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "gravure/core/error.hpp"
 #include "gravure/core/exact.hpp"
 #include "gravure/formats/toml/violations.hpp"
 
@@ -62,6 +63,11 @@ struct SyntaxError {
 /// Parses TOML 1.0. Keys of more than kMaxKeyParts parts are refused: nesting must not exhaust the stack. The tables of
 /// a root key in `parents` are sections of their own ("twin.servo"), in its stead.
 std::variant<Document, SyntaxError> parse_toml(std::string_view text, std::span<const std::string_view> parents = {});
+
+/// The document that the text of a file holds. Fails with bad_file where the text has more than `most_bytes`, which is
+/// said of `what` ("a job file"), and with bad_argument, at its place, where it is no TOML.
+Result<Document> read_document(std::string_view text, const std::string& path, std::string_view what,
+                               std::size_t most_bytes, std::span<const std::string_view> parents = {});
 
 inline constexpr int kMaxKeyParts = 32;
 
