@@ -44,33 +44,36 @@ TEST(RegisterScan, FindsThePoseToTwoMicrometresAtTenOfNoise) {
   EXPECT_EQ(found.eigenvalues.size(), 6U);
 }
 
-TEST(RegisterScan, FindsTheScale) {
+struct ScaleCase {
+  const char* name;
+  std::size_t cad_points;
+  std::size_t scan_points;
+  std::uint32_t dice;
+  double scale_error;
+  double rms_mm;
+};
+
+class RegisterScanScaled : public testing::TestWithParam<ScaleCase> {};
+
+TEST_P(RegisterScanScaled, FindsPoseAndScale) {
   GRAVURE_TRACE_DICE();
-  Dice dice(1);
-  const Blades made = blades(100'000, 50'000, dice);
+  Dice dice(GetParam().dice);
+  const Blades made = blades(GetParam().cad_points, GetParam().scan_points, dice);
   const Similarity truth = pose(0.6 * kDegree, kAxis, {0.3, -0.35, 0.2}, 1.01);
   RegistrationOptions options;
   options.with_scale = true;
   const Registration found = registered(made.cad, without_normals(moved(made.samples, truth, kNoiseMm, dice)), options);
   EXPECT_TRUE(found.converged);
   EXPECT_FALSE(found.scale_refused);
-  EXPECT_NEAR(found.cad_to_scan.scale, 1.01, 2e-4);
-  EXPECT_LT(rms_between(found.cad_to_scan, truth, made.cad.points_mm), 0.002);
+  EXPECT_NEAR(found.cad_to_scan.scale, 1.01, GetParam().scale_error);
+  EXPECT_LT(rms_between(found.cad_to_scan, truth, made.cad.points_mm), GetParam().rms_mm);
   EXPECT_EQ(found.eigenvalues.size(), 7U);
 }
 
-TEST(RegisterScan, FindsPoseAndScaleOfTwoHundredThousandPoints) {
-  GRAVURE_TRACE_DICE();
-  Dice dice(5);
-  const Blades made = blades(200'000, 200'000, dice);
-  const Similarity truth = pose(0.6 * kDegree, kAxis, {0.3, -0.35, 0.2}, 1.01);
-  RegistrationOptions options;
-  options.with_scale = true;
-  const Registration found = registered(made.cad, without_normals(moved(made.samples, truth, kNoiseMm, dice)), options);
-  EXPECT_TRUE(found.converged);
-  EXPECT_NEAR(found.cad_to_scan.scale, 1.01, 1e-4);
-  EXPECT_LT(rms_between(found.cad_to_scan, truth, made.cad.points_mm), 0.001);
-}
+INSTANTIATE_TEST_SUITE_P(Points, RegisterScanScaled,
+                         testing::Values(ScaleCase{"FiftyThousand", 100'000, 50'000, 1, 2e-4, 0.002},
+                                         ScaleCase{"TwoHundredThousand", 200'000, 200'000, 5, 1e-4, 0.001}),
+                         [](const auto& tested) { return tested.param.name; });
 
 /// The tip is not in the scan, a fifth of the points.
 TEST(RegisterScan, FindsThePoseWhereFourFifthsOverlap) {

@@ -6,35 +6,26 @@
 #include <cmath>
 #include <numbers>
 
-#include "gravure/kinematics/machines.hpp"
 #include "gravure/texture/corner_law.hpp"
-#include "gravure/texture/path_timing.hpp"
-#include "gravure/texture/split.hpp"
+#include "timing_case.hpp"
 
 namespace gravure::texture {
 namespace {
 
 /// Two legs with a corner between, on a plane.
-struct Legs {
-  Legs(double turn, const char* plane) : turn_rad(turn) {
-    const auto surface = expression_surface(plane).value();
+struct Legs : test::TimingCase {
+  Legs(double turn, const char* plane)
+      : TimingCase(*expression_surface(plane).value(), path_of(turn), {.sigma_mm = kSigma_mm}, Vector3::Zero(),
+                   Stops::corners),
+        turn_rad(turn) {}
+  static TexturePath path_of(double turn_rad) {
     TexturePath path;
     path.step_mm = 0.1;
     for (int i = -kLeg; i <= kLeg; ++i) {
       const double s = path.step_mm * std::abs(i);
       path.points_mm.emplace_back(i < 0 ? Vector2(-s, 0) : Vector2(s * std::cos(turn_rad), s * std::sin(turn_rad)));
     }
-    split = split_path(*surface, path, {.sigma_mm = kSigma_mm}).value();
-    machine = kinematics::xyzac_machine(kinematics::XyzacSigns::texturing, Vector3::Zero(), {});
-    axes = seven_axes(machine, split.targets, split.stages).value();
-    pulse_mm = pulse_lengths_mm(path, split.targets);
-    request.targets = split.targets;
-    request.axes = axes;
-    request.pulse_mm = pulse_mm;
-    request.table = rotary_table(machine).value();
-    request.limits = published_limits();
-    request.stops = Stops::corners;
-    request.sigma_points = kSigma_mm / path.step_mm;
+    return path;
   }
   /// Of the path, from that of the stages: at the corner a Gaussian goes half way from the one direction to the other.
   double corner_speed_mm_s(const PathMotion& motion) const {
@@ -56,11 +47,6 @@ struct Legs {
   static constexpr int kLeg = 120;
   static constexpr double kSigma_mm = 1.5;
   double turn_rad;
-  Split split;
-  kinematics::Machine machine;
-  std::vector<SevenAxes> axes;
-  std::vector<double> pulse_mm;
-  PathTimingRequest request;
 };
 
 TEST(CornerFeed, IsNeverExceededAndCostsNoTime) {

@@ -6,38 +6,24 @@
 #include <numeric>
 
 #include "gravure/core/path_expand.hpp"
-#include "gravure/kinematics/machines.hpp"
 #include "gravure/texture/planning_memory.hpp"
-#include "gravure/texture/split.hpp"
 #include "published_surface.hpp"
+#include "timing_case.hpp"
 
 namespace gravure::texture {
 namespace {
 
 /// A Hilbert curve on the stated surface, its points as far apart as the published ones.
-struct Fixture {
-  explicit Fixture(int order, double sigma_mm, Stops stops = Stops::points) {
+struct Fixture : test::TimingCase {
+  explicit Fixture(int order, double sigma_mm, Stops stops = Stops::points)
+      : TimingCase(*test::published_surface(), path_of(order), {.sigma_mm = sigma_mm, .cut = 4}, Vector3(0, -12, 0),
+                   stops),
+        five(seven_axes(machine, split.targets, split.targets).value()) {}
+  static TexturePath path_of(int order) {
     const int side = 1 << order;
-    const TexturePath path{hilbert_curve(order, 40.0 / 255 * (side - 1)).value(), 40.0 / 255};
-    split = split_path(*test::published_surface(), path, {.sigma_mm = sigma_mm, .cut = 4}).value();
-    machine = kinematics::xyzac_machine(kinematics::XyzacSigns::texturing, Vector3(0, -12, 0), {});
-    seven = seven_axes(machine, split.targets, split.stages).value();
-    five = seven_axes(machine, split.targets, split.targets).value();
-    pulse_mm = pulse_lengths_mm(path, split.targets);
-    request.targets = split.targets;
-    request.axes = seven;
-    request.pulse_mm = pulse_mm;
-    request.table = rotary_table(machine).value();
-    request.limits = published_limits();
-    request.stops = stops;
-    request.sigma_points = sigma_mm / path.step_mm;
+    return {hilbert_curve(order, 40.0 / 255 * (side - 1)).value(), 40.0 / 255};
   }
-  Split split;
-  kinematics::Machine machine;
-  std::vector<SevenAxes> seven;
   std::vector<SevenAxes> five;
-  std::vector<double> pulse_mm;
-  PathTimingRequest request;
 };
 
 std::vector<PathInstant> all_instants(const PathMotion& motion) {
@@ -156,7 +142,7 @@ TEST(TimeSevenAxes, StaysNearTheStopModel) {
     const auto timed = time_seven_axes(f.request, {});
     ASSERT_TRUE(timed);
     const std::vector<std::size_t> rests = resting_points(f.split.targets, stops);
-    const double model_s = stop_time_s(f.seven, rests, f.request.limits, 5, 7);
+    const double model_s = stop_time_s(f.axes, rests, f.request.limits, 5, 7);
     const double lead_s = 0.4;
     EXPECT_GT(timed.value().time_s, model_s);
     EXPECT_LT(timed.value().time_s, 1.02 * model_s + lead_s);
