@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -141,11 +142,10 @@ std::vector<Line> parts_of(const Line& line, const Cuts& cuts) {
 /// Cuts one contour; `pieces` gets its parts.
 Result<void> cut_contour(const Contour& contour, std::size_t number, double field_mm, std::vector<Piece>& pieces) {
   GRAVURE_TRY(const LocalFrame frame, local_frame(vector_of(contour.direction), Vector3::Zero()));
-  Line whole;
+  const Line whole = points_of(contour);
   Line local;
-  for (const std::array<double, 3>& point : contour.points_mm) {
-    whole.push_back(vector_of(point));
-    local.push_back(frame.to_local(whole.back()));
+  for (const Vector3& point : whole) {
+    local.push_back(frame.to_local(point));
   }
   const std::size_t most = kMostPieces - std::min(kMostPieces, pieces.size() + 1);
   const std::optional<Cuts> cuts = cut_evenly(local, field_mm, most);
@@ -165,6 +165,13 @@ Result<void> cut_contour(const Contour& contour, std::size_t number, double fiel
 }
 
 }  // namespace
+
+std::vector<Vector3> points_of(const Contour& contour) {
+  std::vector<Vector3> points;
+  points.reserve(contour.points_mm.size());
+  std::transform(contour.points_mm.begin(), contour.points_mm.end(), std::back_inserter(points), vector_of);
+  return points;
+}
 
 double length_mm(const std::vector<Vector3>& points) noexcept {
   double sum = 0;

@@ -25,6 +25,9 @@ struct Piece {
 /// bad_argument for a contour without points or direction.
 Result<std::vector<Piece>> cut_to_field(const std::vector<Contour>& contours, double field_mm);
 
+/// The points of a contour, as vectors.
+std::vector<Vector3> points_of(const Contour& contour);
+
 /// Length of a line of points.
 double length_mm(const std::vector<Vector3>& points) noexcept;
 

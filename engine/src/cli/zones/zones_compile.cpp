@@ -146,11 +146,7 @@ void warn_of_contours(const std::vector<Contour>& contours, double pitch_mm) {
   std::vector<std::string> too_short;
   std::vector<std::string> twice;
   for (const Contour& contour : contours) {
-    std::vector<zones::Vector3> points;
-    for (const std::array<double, 3>& point : contour.points_mm) {
-      points.emplace_back(point[0], point[1], point[2]);
-    }
-    if (const double length = zones::length_mm(points); length < pitch_mm) {
+    if (const double length = zones::length_mm(zones::points_of(contour)); length < pitch_mm) {
       too_short.push_back(fmt::format("contour {} is {:.6g} um long", contour.id, length * kUmPerMm));
     }
     const auto [first, is_new] = seen.emplace(contour.points_mm, contour.id);
