@@ -264,6 +264,9 @@ Result<ProgramHeader> compile(ProgramHeader header, const LayerStack& given, con
     layer.fired_pixels = 0;
   }
   GRAVURE_CHECK(Compiler(header, stack, opener, sink, options, geometry, budget).run());
+  if (options.complete_header) {
+    GRAVURE_CHECK(options.complete_header(header));
+  }
   GRAVURE_CHECK(sink.finish(header));
   return header;
 }

@@ -186,7 +186,7 @@ std::string sha256_text_portable(std::string_view bytes) {
   return hash.finish();
 }
 
-Result<std::string> sha256_file(const std::string& path) {
+Result<std::string> sha256_file(const std::string& path, const CancelToken* cancel) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) {
     return Error{ErrorCode::bad_file, path + ": is no file that exists: nothing to hash"};
@@ -200,6 +200,9 @@ Result<std::string> sha256_file(const std::string& path) {
   Sha256 hash(fastest());
   while (const std::size_t got = std::fread(buffer.get(), 1, kChunk, file.get())) {
     hash.add(buffer.get(), got);
+    if (cancel != nullptr && cancel->cancelled()) {
+      return Error{ErrorCode::cancelled, path + ": stopped before its SHA-256 was known"};
+    }
   }
   if (std::ferror(file.get()) != 0) {
     return Error{ErrorCode::io, path + ": cannot read: " + std::strerror(errno)};

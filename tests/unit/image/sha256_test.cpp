@@ -45,6 +45,15 @@ TEST(Sha256, HashesFilesOfAnySizeAsTheirBytes) {
   }
 }
 
+TEST(Sha256, StopsWhenAskedTo) {
+  const TempFolder folder;
+  put_file(folder / "f", "long enough");
+  CancelToken cancel;
+  EXPECT_EQ(sha256_file(folder / "f", &cancel).value(), sha256_text("long enough"));
+  cancel.cancel();
+  EXPECT_EQ(sha256_file(folder / "f", &cancel).error().code, ErrorCode::cancelled);
+}
+
 TEST(Sha256, RefusesWhatIsNoFile) {
   const TempFolder folder;
   EXPECT_EQ(sha256_file(folder / "none").error().code, ErrorCode::bad_file);

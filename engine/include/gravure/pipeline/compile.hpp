@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "gravure/core/image_source.hpp"
 #include "gravure/core/program.hpp"
@@ -15,6 +16,8 @@ struct CompileOptions {
   int threads = 0;                                  ///< 0: one for each processor
   CancelToken* cancel = nullptr;
   Progress* progress = nullptr;  ///< told in lines
+  /// Called when every chunk is put and the program is not finished yet: for what of the header takes long to find.
+  std::function<Result<void>(ProgramHeader&)> complete_header = {};
 };
 
 /// Least memory a compile of this stack, whole images, takes with one worker; `stack.decoder_bytes` counts where it is

@@ -13,6 +13,7 @@
 #include "gravure/sync/make_plan.hpp"
 #include "job/job_machine.hpp"
 #include "job/job_scanner.hpp"
+#include "job/source_hashes.hpp"
 #include "program/program_files.hpp"
 #include "program/program_parts.hpp"
 
@@ -128,25 +129,24 @@ namespace {
 struct Compilation {
   ProgramHeader header;
   LayerStack stack;
+  std::vector<std::string> source_files;  ///< of header.sources, where they lie
 };
 
 /// The images as they become sources of the program, each once.
 class Sources {
  public:
-  Sources(const ImageStack& images, fs::path job_folder, std::vector<SourceImage>& sources)
-      : images_(images), job_folder_(std::move(job_folder)), sources_(sources) {}
+  Sources(const ImageStack& images, fs::path job_folder, Compilation& made)
+      : images_(images), job_folder_(std::move(job_folder)), made_(made) {}
 
   /// Number of the source that a layer of the stack comes from.
-  Result<std::int64_t> of_layer(std::int64_t layer) {
+  std::int64_t of_layer(std::int64_t layer) {
     const std::int64_t index = images_.depth_map ? 0 : layer;
-    const auto [source, is_new] = known_.try_emplace(index, static_cast<std::int64_t>(sources_.size()));
+    const auto [source, is_new] = known_.try_emplace(index, static_cast<std::int64_t>(made_.source_files.size()));
     if (is_new) {
       const StackImage& image = images_.images[static_cast<std::size_t>(index)];
-      std::string& hash = hashes_[image.path];
-      if (hash.empty()) {
-        GRAVURE_TRY(hash, sha256_file(image.path));
-      }
-      sources_.push_back({relative_to(image.path, job_folder_), image.page, image.info.width, image.info.height, hash});
+      made_.source_files.push_back(image.path);
+      made_.header.sources.push_back(
+          {relative_to(image.path, job_folder_), image.page, image.info.width, image.info.height, ""});
     }
     return source->second;
   }
@@ -158,15 +158,14 @@ class Sources {
  private:
   const ImageStack& images_;
   fs::path job_folder_;
-  std::vector<SourceImage>& sources_;
+  Compilation& made_;
   std::map<std::int64_t, std::int64_t> known_;  // image of the stack -> source of the program
-  std::map<std::string, std::string> hashes_;
 };
 
 /// The images that are exposed, in each band and in each direction of the stage.
-Result<void> add_layers(const LoadedJob& loaded, const fs::path& job_folder, const Shard& range, Compilation& made) {
+void add_layers(const LoadedJob& loaded, const fs::path& job_folder, const Shard& range, Compilation& made) {
   ProgramHeader& header = made.header;
-  Sources sources(*loaded.images, job_folder, header.sources);
+  Sources sources(*loaded.images, job_folder, made);
   StoredLayers stored(loaded.plan, loaded.job.image.order, loaded.images->layers);
   for (std::int64_t r = range.first; r < range.end; ++r) {
     header.layer_of_revolution.push_back(stored.number(r));
@@ -175,21 +174,19 @@ Result<void> add_layers(const LoadedJob& loaded, const fs::path& job_folder, con
     }
     StoredLayer layer;
     layer.starts_reverse = line_is_reverse(loaded.plan, r, 0);
-    GRAVURE_TRY(layer.source, sources.of_layer(stored.image_layer(r)));
+    layer.source = sources.of_layer(stored.image_layer(r));
     made.stack.layers.push_back(sources.input(stored.image_layer(r)));
     layer.level = made.stack.layers.back().level;
     header.layers.push_back(layer);
   }
-  return {};
 }
 
 /// Helical: every revolution shows a part of every image, no two the same.
-Result<void> add_helical_layers(const ImageStack& images, const fs::path& job_folder, const Shard& range,
-                                Compilation& made) {
+void add_helical_layers(const ImageStack& images, const fs::path& job_folder, const Shard& range, Compilation& made) {
   ProgramHeader& header = made.header;
-  Sources sources(images, job_folder, header.sources);
+  Sources sources(images, job_folder, made);
   for (std::int64_t layer = 0; layer < images.layers; ++layer) {
-    GRAVURE_CHECK(sources.of_layer(layer));
+    sources.of_layer(layer);
     made.stack.layers.push_back(sources.input(layer));
   }
   for (std::int64_t r = range.first; r < range.end; ++r) {
@@ -198,10 +195,9 @@ Result<void> add_helical_layers(const ImageStack& images, const fs::path& job_fo
     header.layers.push_back(revolution);
     header.layer_of_revolution.push_back(static_cast<std::uint32_t>(r - range.first));
   }
-  return {};
 }
 
-Result<Compilation> prepare_compilation(const LoadedJob& loaded, const CompileRequest& request) {
+Compilation prepare_compilation(const LoadedJob& loaded, const CompileRequest& request) {
   Compilation made;
   const ImageStack& images = *loaded.images;
   const fs::path job_folder = fs::path(loaded.job.path).parent_path();
@@ -226,9 +222,20 @@ Result<Compilation> prepare_compilation(const LoadedJob& loaded, const CompileRe
 
   header.shard = request.shard;
   const Shard range = request.shard.value_or(Shard{0, loaded.plan.job.revolutions, images.layers});
-  GRAVURE_CHECK(loaded.plan.carriage ? add_helical_layers(images, job_folder, range, made)
-                                     : add_layers(loaded, job_folder, range, made));
+  if (loaded.plan.carriage) {
+    add_helical_layers(images, job_folder, range, made);
+  } else {
+    add_layers(loaded, job_folder, range, made);
+  }
   return made;
+}
+
+Result<void> fill_hashes(ProgramHeader& header, SourceHashes& hashes) {
+  GRAVURE_TRY(const std::vector<std::string> found, hashes.wait());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    header.sources[i].sha256 = found[i];
+  }
+  return {};
 }
 
 }  // namespace
@@ -237,8 +244,10 @@ Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& o
                                    const Command& command) {
   CompileOptions options;
   options.cancel = &cancel_token();  // before there is a temporary file: from here on Ctrl-C takes it away again
-  GRAVURE_TRY(Compilation made, prepare_compilation(loaded, request));
-  if (request.resume) {
+  Compilation made = prepare_compilation(loaded, request);
+  SourceHashes hashes(made.source_files, command.threads != 1);
+  if (request.resume) {  // what is there is judged by them
+    GRAVURE_CHECK(fill_hashes(made.header, hashes));
     GRAVURE_TRY(std::optional<ProgramHeader> there, finished_output(made.header, request, *options.cancel));
     if (there) {
       return CompileOutcome{std::move(*there), true};
@@ -251,6 +260,9 @@ Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& o
   options.memory_bytes = command.memory_bytes();
   options.threads = command.threads;
   options.progress = &bar;
+  if (!request.resume) {
+    options.complete_header = [&hashes](ProgramHeader& header) { return fill_hashes(header, hashes); };
+  }
   GRAVURE_TRY(ProgramHeader header, compile(std::move(made.header), made.stack, opener, *sink, options));
   if (!request.shard && may_share_bits(header)) {  // shards are compared when they are merged
     Result<ProgramHeader> shared = share_bits_of(request.output, request.grv);

@@ -8,6 +8,7 @@
 
 #include "gravure/core/error.hpp"
 #include "gravure/core/image_source.hpp"
+#include "gravure/core/progress.hpp"
 #include "gravure/formats/tiff.hpp"
 
 namespace gravure {
@@ -46,7 +47,8 @@ bool natural_less(std::string_view a, std::string_view b);
 
 /// FIPS 180-4 SHA-256, lower-case hexadecimal.
 std::string sha256_text(std::string_view bytes);
-/// The same of a file, streamed. Fails with bad_file when it is missing, io when it cannot be read.
-Result<std::string> sha256_file(const std::string& path);
+/// The same of a file, streamed. Fails with bad_file when it is missing, io when it cannot be read, cancelled when
+/// asked to stop.
+Result<std::string> sha256_file(const std::string& path, const CancelToken* cancel = nullptr);
 
 }  // namespace gravure
