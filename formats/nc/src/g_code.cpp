@@ -7,17 +7,17 @@ namespace {
 
 constexpr double kSecondsPerMinute = 60;
 
-void append_place(const StagePlace& place, std::string& text) {
-  for (std::size_t i = 0; i < kStages; ++i) {
+void append_place(const StagePlace& place, std::size_t stages, std::string& text) {
+  for (std::size_t i = 0; i < stages; ++i) {
     text += ' ';
     text += kStageLetters[i];
     text += number(place[i]);
   }
 }
 
-Result<StagePlace> take_place(LineReader& lines) {
+Result<StagePlace> take_place(LineReader& lines, std::size_t stages) {
   StagePlace place{};
-  for (std::size_t i = 0; i < kStages; ++i) {
+  for (std::size_t i = 0; i < stages; ++i) {
     const bool letter = lines.take(std::string{' ', kStageLetters[i]});
     const auto value = letter ? lines.take_number() : std::nullopt;
     if (!value) {
@@ -37,16 +37,16 @@ Result<void> take_line(LineReader& lines, std::string_view whole) {
 
 }  // namespace
 
-std::string g_code_start(const StagePlace& start, std::string_view title) {
+std::string g_code_start(const StagePlace& start, std::string_view title, std::size_t stages) {
   std::string text = "%\n(" + comment(title) + ")\nG21 G90 G94\nG0";
-  append_place(start, text);
+  append_place(start, stages, text);
   text += "\nG93\n";
   return text;
 }
 
-void append_g_code(const StageBlock& block, std::string& text) {
+void append_g_code(const StageBlock& block, std::string& text, std::size_t stages) {
   text += "G1";
-  append_place(block.place, text);
+  append_place(block.place, stages, text);
   text += fmt::format(" F{:.9f}\n", kSecondsPerMinute / block.duration_s);
 }
 
@@ -65,7 +65,8 @@ Result<StageProgram> parse_g_code(std::string_view text) {
   if (!lines.next() || !lines.take("G0")) {
     return lines.bad("must be the start with G0");
   }
-  GRAVURE_TRY(program.start, take_place(lines));
+  program.stages = lines.holds(std::string{' ', kStageLetters[kStages]}) ? kMostStages : kStages;
+  GRAVURE_TRY(program.start, take_place(lines, program.stages));
   GRAVURE_CHECK(take_line(lines, "G93"));
   while (lines.next()) {
     if (lines.take("G94")) {
@@ -77,7 +78,7 @@ Result<StageProgram> parse_g_code(std::string_view text) {
       return lines.bad("must be a block with G1, or G94");
     }
     StageBlock block;
-    GRAVURE_TRY(block.place, take_place(lines));
+    GRAVURE_TRY(block.place, take_place(lines, program.stages));
     const auto feed = lines.take(" F") ? lines.take_number() : std::nullopt;
     if (!feed || *feed <= 0 || !lines.at_end_of_line()) {
       return lines.bad("must end in F and a number above 0");

@@ -9,7 +9,7 @@
 
 namespace gravure::nc {
 
-inline constexpr std::string_view kStageLetters = "XYZAC";
+inline constexpr std::string_view kStageLetters = "XYZACW";
 
 /// A decimal with the digits a block has: 1e-9 of its unit.
 std::string number(double value);
@@ -22,6 +22,8 @@ class LineReader {
   explicit LineReader(std::string_view text) : text_(text) {}
   /// The next line that is not empty and no comment; false at the end.
   bool next();
+  /// Is it somewhere in what is left of the line?
+  bool holds(std::string_view word) const noexcept { return line_.find(word) != std::string_view::npos; }
   bool at_end_of_line() const noexcept { return line_.empty(); }
   /// Takes `word` where the line goes on with it.
   bool take(std::string_view word);

@@ -8,35 +8,35 @@ namespace {
 constexpr double kMsPerS = 1000;
 
 /// "X1.000000000:0.000000000 Y..."
-void append_moves(const StagePlace& place, const StagePlace& speed, std::string& text) {
-  for (std::size_t i = 0; i < kStages; ++i) {
+void append_moves(const StageBlock& block, std::size_t stages, std::string& text) {
+  for (std::size_t i = 0; i < stages; ++i) {
     text += i == 0 ? "" : " ";
     text += kStageLetters[i];
-    text += number(place[i]) + ":" + number(speed[i]);
+    text += number(block.place[i]) + ":" + number(block.speed[i]);
   }
   text += '\n';
 }
 
-Result<void> take_moves(LineReader& lines, StagePlace& place, StagePlace& speed) {
-  for (std::size_t i = 0; i < kStages; ++i) {
+Result<void> take_moves(LineReader& lines, std::size_t stages, StageBlock& block) {
+  for (std::size_t i = 0; i < stages; ++i) {
     const bool letter = (i == 0 || lines.take(" ")) && lines.take(std::string(1, kStageLetters[i]));
     const auto where = letter ? lines.take_number() : std::nullopt;
     const auto fast = where && lines.take(":") ? lines.take_number() : std::nullopt;
     if (!fast) {
       return lines.bad(std::string("must go on with ") + kStageLetters[i] + "place:speed");
     }
-    place[i] = *where;
-    speed[i] = *fast;
+    block.place[i] = *where;
+    block.speed[i] = *fast;
   }
   return lines.at_end_of_line() ? Result<void>() : lines.bad("goes on behind its moves");
 }
 
 }  // namespace
 
-std::string pvt_start(const StagePlace& start, std::string_view title) {
+std::string pvt_start(const StagePlace& start, std::string_view title, std::size_t stages) {
   std::string text =
       "; " + comment(title) + "\n; places in mm and degrees, speeds a second\nOPEN PROG 1 CLEAR\nABS\nRAPID\n";
-  for (std::size_t i = 0; i < kStages; ++i) {
+  for (std::size_t i = 0; i < stages; ++i) {
     text += i == 0 ? "" : " ";
     text += kStageLetters[i];
     text += number(start[i]);
@@ -44,9 +44,9 @@ std::string pvt_start(const StagePlace& start, std::string_view title) {
   return text + "\n";
 }
 
-void append_pvt(const StageBlock& block, std::string& text) {
+void append_pvt(const StageBlock& block, std::string& text, std::size_t stages) {
   text += fmt::format("PVT{:.9f}\n", block.duration_s * kMsPerS);
-  append_moves(block.place, block.speed, text);
+  append_moves(block, stages, text);
 }
 
 std::string pvt_end() {
@@ -65,7 +65,8 @@ Result<StageProgram> parse_pvt(std::string_view text) {
     }
   }
   lines.next();
-  for (std::size_t i = 0; i < kStages; ++i) {
+  program.stages = lines.holds(std::string{' ', kStageLetters[kStages]}) ? kMostStages : kStages;
+  for (std::size_t i = 0; i < program.stages; ++i) {
     const bool letter = (i == 0 || lines.take(" ")) && lines.take(std::string(1, kStageLetters[i]));
     const auto where = letter ? lines.take_number() : std::nullopt;
     if (!where) {
@@ -86,7 +87,7 @@ Result<StageProgram> parse_pvt(std::string_view text) {
     if (!lines.next()) {
       return lines.bad("ends without moves");
     }
-    GRAVURE_CHECK(take_moves(lines, block.place, block.speed));
+    GRAVURE_CHECK(take_moves(lines, program.stages, block));
     program.blocks.push_back(block);
   }
   return lines.bad("ends without CLOSE");
@@ -94,7 +95,7 @@ Result<StageProgram> parse_pvt(std::string_view text) {
 
 StagePlace straight_between(const StagePlace& from, const StageBlock& block, double share) {
   StagePlace place{};
-  for (std::size_t i = 0; i < kStages; ++i) {
+  for (std::size_t i = 0; i < kMostStages; ++i) {
     place[i] = from[i] + share * (block.place[i] - from[i]);
   }
   return place;
@@ -103,7 +104,7 @@ StagePlace straight_between(const StagePlace& from, const StageBlock& block, dou
 StagePlace cubic_between(const StagePlace& from, const StagePlace& from_speed, const StageBlock& block, double share) {
   StagePlace place{};
   const double rest = 1 - share;
-  for (std::size_t i = 0; i < kStages; ++i) {
+  for (std::size_t i = 0; i < kMostStages; ++i) {
     const double way = block.place[i] - from[i];
     place[i] = from[i] + share * share * (3 - 2 * share) * way +
                share * rest * block.duration_s * (rest * from_speed[i] - share * block.speed[i]);

@@ -43,6 +43,34 @@ TEST(GCode, ComesBackAsItWas) {
   expect_equal(parse_g_code(g_code(two_blocks())), two_blocks(), false);
 }
 
+/// W stands behind C, in every block or in none.
+TEST(StageProgram, HasAFocusAxisWhereItsStartHasOne) {
+  StageProgram program = two_blocks();
+  program.stages = kMostStages;
+  program.start[5] = 0.25;
+  program.blocks[0].place[5] = -0.5;
+  program.blocks[0].speed[5] = 3;
+  std::string iso = g_code_start(program.start, "title", kMostStages);
+  std::string pvt = pvt_start(program.start, "title", kMostStages);
+  for (const StageBlock& block : program.blocks) {
+    append_g_code(block, iso, kMostStages);
+    append_pvt(block, pvt, kMostStages);
+  }
+  iso += g_code_end();
+  pvt += pvt_end();
+  EXPECT_NE(iso.find(" C-371.000000000 W-0.500000000 F12000"), std::string::npos) << iso;
+  EXPECT_NE(pvt.find(" W-0.500000000:3.000000000\n"), std::string::npos) << pvt;
+  expect_equal(parse_g_code(iso), program, false);
+  expect_equal(parse_pvt(pvt), program, true);
+  EXPECT_EQ(parse_g_code(iso).value().stages, kMostStages);
+  EXPECT_EQ(straight_between(program.start, program.blocks[0], 0.5)[5], -0.125);
+  iso.replace(iso.find(" W-0.500000000"), 14, "");
+  EXPECT_NE(parse_g_code(iso).error().message.find("line 6: must go on with W"), std::string::npos)
+      << parse_g_code(iso).error().message;
+  pvt.replace(pvt.find(" W-0.500000000:3.000000000"), 26, "");
+  EXPECT_NE(parse_pvt(pvt).error().message.find("must go on with W"), std::string::npos);
+}
+
 TEST(GCode, GivesTheFeedAsTheInverseOfTheTime) {
   EXPECT_NE(g_code(two_blocks())
                 .find("G93\nG1 X1.250000000 Y-2.000000000 Z0.500000000 A10.000000000 C-371.000000000 "
