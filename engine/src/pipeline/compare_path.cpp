@@ -41,7 +41,7 @@ class PathComparison {
         cancel_(cancel),
         progress_(progress),
         along_counts_per_mm_(to_double(plan_.path->along_counts_per_mm)) {
-    for (std::size_t axis = 0; axis < counts_per_unit_.size(); ++axis) {
+    for (std::size_t axis = 0; axis < plan_.path->axes.size(); ++axis) {
       counts_per_unit_[axis] = to_double(plan_.path->axes[axis].counts_per_unit);
     }
   }
@@ -142,7 +142,7 @@ class PathComparison {
   }
 
   std::optional<std::string> differing_axis(const PathSetPoint& stored, const PathInstant& wanted) const {
-    for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+    for (std::size_t axis = 0; axis < plan_.path->axes.size(); ++axis) {
       const double position = static_cast<double>(stored.counts[axis]) / counts_per_unit_[axis];
       if (!(std::abs(position - wanted.axes[axis]) <= kSameLength)) {
         return std::string(kPathAxes[axis]);

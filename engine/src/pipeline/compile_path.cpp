@@ -50,7 +50,7 @@ class SetPointReader {
  public:
   SetPointReader(const Plan& plan, const PathMotion& motion)
       : motion_(motion), along_counts_per_mm_(to_double(plan.path->along_counts_per_mm)) {
-    for (std::size_t axis = 0; axis < counts_per_unit_.size(); ++axis) {
+    for (std::size_t axis = 0; axis < plan.path->axes.size(); ++axis) {
       counts_per_unit_[axis] = to_double(plan.path->axes[axis].counts_per_unit);
     }
   }
@@ -96,7 +96,7 @@ class SetPointReader {
   }
 
   const PathMotion& motion_;
-  std::array<double, kPathAxes.size()> counts_per_unit_{};
+  std::array<double, kPathAxes.size()> counts_per_unit_{};  ///< 0 where there is no W
   double along_counts_per_mm_;
   std::int64_t along_ = 0;
   std::int64_t done_ = 0;
@@ -171,6 +171,7 @@ class PathCompiler {
   Result<CompiledPath> finish() {
     header_.layers = {StoredLayer{false, chunks_.fired(), 0, 0}};
     header_.layer_of_revolution = {0};
+    header_.format_version = format_version_of(header_.plan);
     GRAVURE_CHECK(sink_.finish(header_));
     const PathSpacing spacing = slots_.spacing();
     return CompiledPath{std::move(header_), spacing};

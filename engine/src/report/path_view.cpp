@@ -18,8 +18,8 @@ std::int64_t half(std::int64_t value) {
 }
 
 /// What a count of each axis is, in mm or degrees.
-std::array<double, kPathAxes.size()> units_of(const PathPlan& path) {
-  std::array<double, kPathAxes.size()> units{};
+std::vector<double> units_of(const PathPlan& path) {
+  std::vector<double> units(path.axes.size());
   for (std::size_t axis = 0; axis < units.size(); ++axis) {
     const bool turns = kPathAxes[axis] == "A" || kPathAxes[axis] == "C";
     units[axis] = (turns ? 180 / std::numbers::pi : 1) / to_double(path.axes[axis].counts_per_unit);
@@ -37,8 +37,8 @@ Result<PathTraces> path_traces(LineSource& program, std::size_t most_stretches, 
   constexpr std::int64_t kBlock = 8192;
   const std::int64_t total = set_points_of(plan);
   const std::int64_t stretches = std::min(total, static_cast<std::int64_t>(most_stretches));
-  const std::array<double, kPathAxes.size()> units = units_of(*plan.path);
-  PathTraces traces;
+  const std::vector<double> units = units_of(*plan.path);
+  PathTraces traces(units.size());
   std::vector<PathSetPoint> block;
   for (std::int64_t first = 0; first < total; first += kBlock) {
     if (cancel != nullptr && cancel->cancelled()) {

@@ -8,7 +8,7 @@ namespace gravure::texture {
 
 using kinematics::Vector3;
 
-SevenLimits published_limits() noexcept {
+AxesLimits published_limits() {
   // The jerk that reaches the acceleration in 10 ms on stages, in 20 ms on the galvo.
   const auto stage = [](double speed, double acceleration) {
     return AxisBounds{speed, acceleration, acceleration * 100};
@@ -17,7 +17,11 @@ SevenLimits published_limits() noexcept {
   return {stage(100, 100), stage(100, 100), stage(100, 50), stage(1, 1.994), stage(6, 3.734), galvo, galvo};
 }
 
-Result<void> check_limits(const SevenLimits& limits) {
+Result<void> check_limits(const AxesLimits& limits) {
+  if (limits.size() != kFocusAxis && limits.size() != kPathAxes.size()) {
+    return Error{ErrorCode::bad_argument, fmt::format("limits of {} axes: must be {}, or {} with a focus axis",
+                                                      limits.size(), kFocusAxis, kPathAxes.size())};
+  }
   for (std::size_t k = 0; k < limits.size(); ++k) {
     for (const double each : {limits[k].speed, limits[k].acceleration, limits[k].jerk}) {
       if (!(each > 0) || !std::isfinite(each)) {
@@ -30,8 +34,9 @@ Result<void> check_limits(const SevenLimits& limits) {
   return {};
 }
 
-Result<SevenLimits> limits_of(const kinematics::Machine& machine, const SevenLimits& otherwise) {
-  SevenLimits limits = otherwise;
+Result<AxesLimits> limits_of(const kinematics::Machine& machine, const AxesLimits& otherwise) {
+  GRAVURE_CHECK(check_limits(otherwise));
+  AxesLimits limits = otherwise;
   constexpr std::size_t kStages = 5;
   for (std::size_t k = 0; k < kStages; ++k) {
     GRAVURE_TRY(const std::size_t at, kinematics::find_joint(machine, kPathAxes[k]));
@@ -39,7 +44,7 @@ Result<SevenLimits> limits_of(const kinematics::Machine& machine, const SevenLim
     limits[k] = {joint.max_speed.value_or(limits[k].speed), joint.max_acceleration.value_or(limits[k].acceleration),
                  joint.max_jerk.value_or(limits[k].jerk)};
   }
-  for (std::size_t k = kStages; k < limits.size(); ++k) {
+  for (std::size_t k = kStages; k < kFocusAxis; ++k) {
     limits[k] = {machine.head.max_speed_mm_s.value_or(limits[k].speed),
                  machine.head.max_acceleration_mm_s2.value_or(limits[k].acceleration),
                  machine.head.max_jerk_mm_s3.value_or(limits[k].jerk)};

@@ -43,8 +43,9 @@ using AxisErrors = std::array<double, kPathAxes.size()>;
 
 class Prediction {
  public:
-  Prediction(const SevenServos& servos, const RotaryTable& table, double servo_s) : table_(table) {
+  Prediction(const AxesServos& servos, const RotaryTable& table, double servo_s) : table_(table) {
     loops_.reserve(servos.size());
+    axes_.resize(servos.size());
     for (const ServoLoop& servo : servos) {
       loops_.emplace_back(servo, servo_s);
     }
@@ -62,8 +63,8 @@ class Prediction {
   }
   FollowingErrors result() const {
     FollowingErrors errors;
-    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
-      errors.axes[axis] = axes_[axis].result();
+    for (const Worst& axis : axes_) {
+      errors.axes.push_back(axis.result());
     }
     errors.spot_mm = spot_.result();
     errors.focus_mm = focus_.result();
@@ -73,7 +74,7 @@ class Prediction {
  private:
   RotaryTable table_;
   std::vector<ServoStep> loops_;
-  std::array<Worst, kPathAxes.size()> axes_;
+  std::vector<Worst> axes_;
   Worst spot_;
   Worst focus_;
 };
@@ -83,25 +84,34 @@ class Prediction {
 Vector3 off_the_point(const RotaryTable& table, const std::array<double, kPathAxes.size()>& axes,
                       const std::array<double, kPathAxes.size()>& behind) {
   const Vector3 sense(1, table.sense, 1);
-  const Vector3 point(axes[0] + axes[5], axes[1] + axes[6], axes[2]);
+  const Vector3 point(axes[0] + axes[5], axes[1] + axes[6], axes[2] + axes[kFocusAxis]);
   const double a_rad = table.sense * axes[3];
   const Vector3 c_axis(0, -std::sin(a_rad), std::cos(a_rad));
   const Vector3 turn = table.sense * (behind[3] * Vector3::UnitX() + behind[4] * c_axis);
   const Vector3 turned = turn.cross(sense.cwiseProduct(point));
-  return sense.cwiseProduct(turned) - Vector3(behind[0] + behind[5], behind[1] + behind[6], behind[2]);
+  return sense.cwiseProduct(turned) -
+         Vector3(behind[0] + behind[5], behind[1] + behind[6], behind[2] + behind[kFocusAxis]);
 }
 
-SevenServos assumed_servos() noexcept {
+AxesServos assumed_servos(bool focus_axis) {
   constexpr double kDamping = 0.7;
   const ServoLoop linear{50, kDamping};
   const ServoLoop rotary{30, kDamping};
   const ServoLoop galvo{1000, kDamping};
-  return {linear, linear, linear, rotary, rotary, galvo, galvo};
+  AxesServos servos{linear, linear, linear, rotary, rotary, galvo, galvo};
+  if (focus_axis) {
+    servos.push_back(linear);
+  }
+  return servos;
 }
 
-Result<void> check_servos(const SevenServos& servos) {
+Result<void> check_servos(const AxesServos& servos) {
   constexpr double kMost_hz = 1e6;
   constexpr double kMostDamping = 100;
+  if (servos.size() != kFocusAxis && servos.size() != kPathAxes.size()) {
+    return Error{ErrorCode::bad_argument, fmt::format("servos of {} axes: must be {}, or {} with a focus axis",
+                                                      servos.size(), kFocusAxis, kPathAxes.size())};
+  }
   for (std::size_t axis = 0; axis < servos.size(); ++axis) {
     const ServoLoop& servo = servos[axis];
     if (!(servo.natural_hz > 0 && servo.natural_hz <= kMost_hz && servo.damping > 0 && servo.damping <= kMostDamping)) {
@@ -113,7 +123,7 @@ Result<void> check_servos(const SevenServos& servos) {
   return {};
 }
 
-Result<FollowingErrors> predict_following(const PathMotion& motion, const SevenServos& servos, const RotaryTable& table,
+Result<FollowingErrors> predict_following(const PathMotion& motion, const AxesServos& servos, const RotaryTable& table,
                                           double servo_s, const CancelToken& cancel) {
   GRAVURE_CHECK(check_servos(servos));
   Prediction prediction(servos, table, servo_s);

@@ -22,15 +22,11 @@ double bound_of(LimitKind kind, const AxisBounds& limits) {
   return kind == LimitKind::speed ? limits.speed : kind == LimitKind::acceleration ? limits.acceleration : limits.jerk;
 }
 
-std::array<double, kPathAxes.size()> places_of(const SevenAxes& at) {
-  return {at.x_mm, at.y_mm, at.z_mm, at.a_rad, at.c_rad, at.u_mm, at.v_mm};
-}
-
 /// The ways of an axis from turn to turn.
 std::vector<double> ways_of(std::span<const SevenAxes> axes, std::size_t axis) {
   constexpr double kRounding = 1e-9;  // mm or rad
   std::vector<double> ways;
-  double from = places_of(axes.front())[axis];
+  double from = values_of(axes.front())[axis];
   double last = from;
   const auto end_way = [&] {
     if (std::abs(last - from) > kRounding) {
@@ -39,7 +35,7 @@ std::vector<double> ways_of(std::span<const SevenAxes> axes, std::size_t axis) {
     from = last;
   };
   for (const SevenAxes& each : axes) {
-    const double at = places_of(each)[axis];
+    const double at = values_of(each)[axis];
     if ((at - last) * (last - from) < 0) {
       end_way();
     }
@@ -65,7 +61,7 @@ constexpr const char* kAdvice = "take a faster axis, a longer servo period or a 
 
 Result<void> check_least_time(const PathTimingRequest& request) {
   const double most_s = static_cast<double>(kMostPeriods) * request.servo_s;
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < request.limits.size(); ++axis) {
     const std::vector<double> ways = ways_of(request.axes, axis);
     const double share = axis < kStageAxes ? 1 : 0.5;
     for (const LimitKind kind : {LimitKind::speed, LimitKind::acceleration, LimitKind::jerk}) {

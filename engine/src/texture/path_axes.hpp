@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "gravure/core/path_motion.hpp"
 #include "gravure/texture/axes.hpp"
 
 namespace gravure::texture {
@@ -21,9 +22,9 @@ inline std::array<double, kStageAxes> stages_of(const SevenAxes& at) noexcept {
   return {at.x_mm, at.y_mm, at.z_mm, at.a_rad, at.c_rad};
 }
 
-/// In the order of kPathAxes.
-inline std::array<double, 7> values_of(const SevenAxes& at) noexcept {
-  return {at.x_mm, at.y_mm, at.z_mm, at.a_rad, at.c_rad, at.u_mm, at.v_mm};
+/// In the order of kPathAxes, as if there were a focus axis.
+inline std::array<double, kPathAxes.size()> values_of(const SevenAxes& at) noexcept {
+  return {at.x_mm, at.y_mm, at.z_mm, at.a_rad, at.c_rad, at.u_mm, at.v_mm, at.w_mm};
 }
 
 }  // namespace gravure::texture

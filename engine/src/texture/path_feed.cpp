@@ -16,7 +16,7 @@ constexpr double kFirstSlack = 1.01;   ///< smoothing and jerk take something, t
 /// the speed: |slope u + bend x| <= limit of every axis.
 class Allowed {
  public:
-  Allowed(const SevenLimits& limits, const StageState& at, double speed2, double acceleration, double slack)
+  Allowed(const AxesLimits& limits, const StageState& at, double speed2, double acceleration, double slack)
       : most_(speed2 / (slack * slack)) {
     lines_[0] = {0, acceleration / (slack * slack)};
     double by_third = std::numeric_limits<double>::infinity();  // jerk, by what speed^3 makes of it
@@ -129,7 +129,7 @@ void PathFeed::cap_runs(const PathRuns& path, bool ends) {
   }
 }
 
-void PathFeed::sweep(const SevenLimits& limits, const StageSpline& stages) {
+void PathFeed::sweep(const AxesLimits& limits, const StageSpline& stages) {
   const std::size_t last = speed2_.size() - 1;
   const auto allowed = [&](std::size_t i) {
     const double slack = i < last ? (i > 0 ? std::max(slack_[i - 1], slack_[i]) : slack_[i]) : slack_[last - 1];
@@ -151,7 +151,7 @@ double PathFeed::segment_s(std::size_t segment) const noexcept {
 }
 
 /// So that the spot can stop from the speed that the stages allow at the ends of runs, on the mean.
-void PathFeed::choose_knot(const SevenLimits& limits, PathRuns& path) const {
+void PathFeed::choose_knot(const AxesLimits& limits, PathRuns& path) const {
   constexpr double kLeast_s = 1e-3;
   constexpr double kMost_s = 0.05;
   double sum = 0;
@@ -207,7 +207,7 @@ double PathFeed::time_s(const PathRuns& path) const noexcept {
   return sum;
 }
 
-Result<void> PathFeed::plan(const SevenLimits& limits, const StageSpline& stages, PathRuns& path) {
+Result<void> PathFeed::plan(const AxesLimits& limits, const StageSpline& stages, PathRuns& path) {
   if (!any()) {
     return {};
   }

@@ -24,7 +24,7 @@ class PathFeed {
   void slow(std::size_t segment, double factor) noexcept { slack_[segment] *= factor; }
   /// Finds the speeds and gives every long run its feed; the first time it chooses the knots as well.
   /// out_of_range where feeds would be too long to be held.
-  Result<void> plan(const SevenLimits& limits, const StageSpline& stages, PathRuns& path);
+  Result<void> plan(const AxesLimits& limits, const StageSpline& stages, PathRuns& path);
   /// How long a segment of a long run takes, s.
   double segment_s(std::size_t segment) const noexcept;
 
@@ -34,8 +34,8 @@ class PathFeed {
     double acceleration = 0;
   };
   void cap_runs(const PathRuns& path, bool ends);
-  void sweep(const SevenLimits& limits, const StageSpline& stages);
-  void choose_knot(const SevenLimits& limits, PathRuns& path) const;
+  void sweep(const AxesLimits& limits, const StageSpline& stages);
+  void choose_knot(const AxesLimits& limits, PathRuns& path) const;
   double time_s(const PathRuns& path) const noexcept;
   void sample(PathRuns& path, PathRun& run) const;
 

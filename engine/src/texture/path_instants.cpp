@@ -63,12 +63,13 @@ Result<void> check_range(std::int64_t first, std::size_t size, std::int64_t inst
 }  // namespace
 
 SevenAxisMotion::SevenAxisMotion(PathRuns path, StageSpline stages, SmoothPlace place, std::vector<double> pulse_mm,
-                                 const RotaryTable& table)
+                                 const RotaryTable& table, bool focus_axis)
     : path_(std::move(path)),
       stages_(std::move(stages)),
       place_(std::move(place)),
       pulse_mm_(std::move(pulse_mm)),
-      table_(table) {}
+      table_(table),
+      focus_axis_(focus_axis) {}
 
 Result<void> SevenAxisMotion::read(std::int64_t first, std::span<PathInstant> out) const {
   GRAVURE_CHECK(check_range(first, out.size(), instants()));
@@ -82,6 +83,7 @@ Result<void> SevenAxisMotion::read(std::int64_t first, std::span<PathInstant> ou
     std::copy(stages.begin(), stages.end(), at.axes.begin());
     at.axes[5] = spot.x() - stages[0];
     at.axes[6] = spot.y() - stages[1];
+    at.axes[kFocusAxis] = focus_axis_ ? spot.z() - stages[2] : 0;
     at.along_mm = between(pulse_mm_, cursor.place());
   }
   return {};

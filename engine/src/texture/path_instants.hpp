@@ -9,11 +9,11 @@
 
 namespace gravure::texture {
 
-/// Seven axes at any instant, from the runs and the stages' path.
+/// Seven axes at any instant, and W where the head has it, from the runs and the stages' path.
 class SevenAxisMotion final : public PathMotion {
  public:
   SevenAxisMotion(PathRuns path, StageSpline stages, SmoothPlace place, std::vector<double> pulse_mm,
-                  const RotaryTable& table);
+                  const RotaryTable& table, bool focus_axis);
   std::int64_t instants() const noexcept override { return lead() + place_.end() + 1; }
   Result<void> read(std::int64_t first, std::span<PathInstant> out) const override;
 
@@ -29,6 +29,7 @@ class SevenAxisMotion final : public PathMotion {
   SmoothPlace place_;
   std::vector<double> pulse_mm_;
   RotaryTable table_;
+  bool focus_axis_;
 };
 
 /// The stages alone, at rest at the end of every run.

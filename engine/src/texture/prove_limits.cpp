@@ -32,12 +32,12 @@ std::array<double, kKinds> extremes(const std::array<double, 4>& x) {
   return {speed, std::max(std::abs(before), std::abs(after)), std::abs(jerk)};
 }
 
-using AllAxes = Eigen::Array<double, kPathAxes.size() + 1, 1>;  // and the way covered: eight go in pairs
+using AllAxes = Eigen::Array<double, kPathAxes.size(), 1>;  // eight go in pairs; W is 0 where there is none
 
 AllAxes all_axes(const PathInstant& at) {
-  static_assert(sizeof(PathInstant) == sizeof(AllAxes));
+  static_assert(sizeof(at.axes) == sizeof(AllAxes));
   AllAxes all;
-  std::memcpy(all.data(), &at, sizeof(at));
+  std::memcpy(all.data(), at.axes.data(), sizeof(at.axes));
   return all;
 }
 
@@ -78,7 +78,8 @@ BlockExtremes block_extremes(std::span<const PathInstant> block) {
 
 class Uses {
  public:
-  Uses(const SevenLimits& limits, double servo_s, const LimitBreach& breach) : breach_(breach) {
+  Uses(const AxesLimits& limits, double servo_s, const LimitBreach& breach)
+      : uses_(limits.size() * kKinds), breach_(breach) {
     for (std::size_t axis = 0; axis < limits.size(); ++axis) {
       double unit = 1;
       for (std::size_t kind = 0; kind < kKinds; ++kind) {
@@ -108,7 +109,7 @@ class Uses {
       look_at(block.subspan(k, 4), begin + static_cast<std::int64_t>(k));
     }
   }
-  std::vector<LimitUse> uses() const { return {uses_.begin(), uses_.end()}; }
+  std::vector<LimitUse> uses() const { return uses_; }
   /// What a later part of the same motion has found.
   void join(const Uses& later) {
     for (std::size_t k = 0; k < uses_.size(); ++k) {
@@ -120,7 +121,7 @@ class Uses {
 
  private:
   void look_at(std::span<const PathInstant> four, std::int64_t instant) {
-    for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+    for (std::size_t axis = 0; axis * kKinds < uses_.size(); ++axis) {
       const std::array<double, 4> x{four[0].axes[axis], four[1].axes[axis], four[2].axes[axis], four[3].axes[axis]};
       const std::array<double, kKinds> most = extremes(x);
       for (std::size_t kind = 0; kind < kKinds; ++kind) {
@@ -137,7 +138,7 @@ class Uses {
       use.instant = instant;
     }
   }
-  std::array<LimitUse, kPathAxes.size() * kKinds> uses_;
+  std::vector<LimitUse> uses_;
   std::array<double, kKinds> per_unit_{};
   const LimitBreach& breach_;
 };
@@ -176,9 +177,10 @@ std::string_view source_name(LimitSource source) noexcept {
   return "assumed";
 }
 
-Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const SevenLimits& limits, double servo_s,
+Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const AxesLimits& limits, double servo_s,
                                            const CancelToken& cancel, const LimitBreach& breach, int threads,
                                            Progress* progress) {
+  GRAVURE_CHECK(check_limits(limits));
   std::mutex one_at_a_time;
   LimitBreach told;
   if (breach) {

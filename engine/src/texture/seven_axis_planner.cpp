@@ -132,7 +132,8 @@ TimedPath SevenAxisPlanner::timed() const {
   timed.stage_lag_mm = stage_lag_mm(request_, stages_, place_);
   timed.smoothing_s = static_cast<double>(cell_) * kSpread * request_.servo_s;
   timed.motion = std::make_shared<SevenAxisMotion>(
-      path_, stages_, place_, std::vector<double>(request_.pulse_mm.begin(), request_.pulse_mm.end()), request_.table);
+      path_, stages_, place_, std::vector<double>(request_.pulse_mm.begin(), request_.pulse_mm.end()), request_.table,
+      has_focus_axis(request_.limits));
   timed.time_s = static_cast<double>(timed.motion->instants() - 1) * request_.servo_s;
   return timed;
 }

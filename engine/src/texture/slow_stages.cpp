@@ -33,7 +33,7 @@ struct Need {
 };
 
 /// Whether all is within a share of the limits, which is so nearly everywhere: no roots for that.
-bool within(const SevenLimits& limits, const StageRates& r, double share) {
+bool within(const AxesLimits& limits, const StageRates& r, double share) {
   bool kept = true;
   for (std::size_t k = 0; k < kStageAxes; ++k) {
     kept = kept && std::abs(r.speed[k]) <= limits[k].speed * share &&
@@ -49,7 +49,7 @@ double feed_share(std::span<const double> most_speed, const PlaceState& where) {
   return most_speed.empty() ? 0 : where.speed / std::min(most_speed[i], most_speed[i + 1]);
 }
 
-Need need_of(const SevenLimits& limits, const StageRates& r) {
+Need need_of(const AxesLimits& limits, const StageRates& r) {
   Need need;
   for (std::size_t k = 0; k < kStageAxes; ++k) {
     const double factor = std::max({std::abs(r.speed[k]) / limits[k].speed,
@@ -62,15 +62,15 @@ Need need_of(const SevenLimits& limits, const StageRates& r) {
   return need;
 }
 
-/// What the motion of the stages takes of the galvo's speed, acceleration and jerk.
+/// What the motion of the stages takes of the speed of galvo and focus axis, acceleration and jerk.
 struct Taken {
   double speed = 0;
   double acceleration = 0;
   double jerk = 0;
 };
 
-Taken taken_by(const StageRates& r, double reach_mm, double speed, double acceleration, const SpotState& spot,
-               double tilt) {
+Taken taken_by(const StageRates& r, bool focus_axis, double reach_mm, double speed, double acceleration,
+               const SpotState& spot, double tilt) {
   const double w = std::abs(r.speed[3]) + std::abs(r.speed[4]);
   const double w_dot = std::abs(r.acceleration[3]) + std::abs(r.acceleration[4]);
   const double w_2 = w * w + w_dot;
@@ -78,7 +78,10 @@ Taken taken_by(const StageRates& r, double reach_mm, double speed, double accele
   const double v = speed * spot.tangent.norm();
   const double a = acceleration * spot.tangent.norm();
   const double bend = std::abs(spot.bend_per_mm) * tilt;
-  const auto most = [](const StageValues& of) { return std::max(std::abs(of[0]), std::abs(of[1])); };
+  const auto most = [focus_axis](const StageValues& of) {
+    const double across = std::max(std::abs(of[0]), std::abs(of[1]));
+    return focus_axis ? std::max(across, std::abs(of[2])) : across;
+  };
   return {most(r.speed) + w * reach_mm, most(r.acceleration) + w_2 * reach_mm + 2 * w * v + bend * v * v,
           most(r.jerk) + w_3 * reach_mm + 3 * w_2 * v + 3 * w * a + 3 * bend * v * a};
 }
@@ -93,12 +96,15 @@ double left(double limit, double taken) {
 
 void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, const SmoothPlace* place,
                   PathRuns& path) {
+  const AxesLimits& limits = request.limits;
+  const bool focus_axis = has_focus_axis(limits);
   for (PathRun& run : path.runs()) {
     const double speed = place != nullptr ? path.peak_speed(run) : 0;
     const double acceleration = place != nullptr ? path.peak_acceleration(run) : 0;
     Taken taken;
     double u = 0;
     double v = 0;
+    double w = 0;
     const std::size_t looks = run.count;
     for (std::size_t k = 0; k <= looks; ++k) {
       const double share = static_cast<double>(k) / static_cast<double>(looks);
@@ -112,22 +118,23 @@ void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, c
         pose = state.value;
         at_rest = rates(state, where);
       }
-      const Taken here = taken_by(at_rest, (spot.position_mm - request.table.centre_mm).norm(), speed, acceleration,
-                                  spot, std::abs(std::sin(pose[3])));
+      const Taken here = taken_by(at_rest, focus_axis, (spot.position_mm - request.table.centre_mm).norm(), speed,
+                                  acceleration, spot, std::abs(std::sin(pose[3])));
       taken = {std::max(taken.speed, here.speed), std::max(taken.acceleration, here.acceleration),
                std::max(taken.jerk, here.jerk)};
       const Vector3 direction = request.table.turned(pose[3], pose[4], spot.tangent + request.table.centre_mm);
       u = std::max(u, std::abs(direction.x()));
       v = std::max(v, std::abs(direction.y()));
+      w = std::max(w, std::abs(direction.z()));
     }
     constexpr double kLeast = 1e-9;  // a run straight along the beam has to end too
-    const auto cap = [&](double of_u, double of_v, double gone) {
-      return std::min(left(of_u, gone) / std::max(u, kLeast), left(of_v, gone) / std::max(v, kLeast));
+    const auto cap = [&](double AxisBounds::*kind, double gone) {
+      const double across = std::min(left(limits[5].*kind, gone) / std::max(u, kLeast),
+                                     left(limits[6].*kind, gone) / std::max(v, kLeast));
+      return focus_axis ? std::min(across, left(limits[kFocusAxis].*kind, gone) / std::max(w, kLeast)) : across;
     };
-    const SevenLimits& limits = request.limits;
-    PathRuns::cap(run, {cap(limits[5].speed, limits[6].speed, taken.speed),
-                        cap(limits[5].acceleration, limits[6].acceleration, taken.acceleration),
-                        cap(limits[5].jerk, limits[6].jerk, taken.jerk)});
+    PathRuns::cap(run, {cap(&AxisBounds::speed, taken.speed), cap(&AxisBounds::acceleration, taken.acceleration),
+                        cap(&AxisBounds::jerk, taken.jerk)});
   }
 }
 
@@ -191,7 +198,7 @@ void Needs::slow(PathFeed& feed, PathRuns& path) const {
   }
 }
 
-SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place,
+SlowDown slow_stages(const AxesLimits& limits, const StageSpline& stages, const SmoothPlace& place,
                      std::span<const double> most_speed, double gain, PathFeed& feed, PathRuns& path) {
   // Of the factor: between two looks nothing is seen, and feeds use their limits everywhere.
   const double allowed = feed.any() ? 0.995 : 0.9995;
@@ -245,7 +252,7 @@ double time_at(const motion::Profile& profile, double position_mm) {
 
 }  // namespace
 
-std::optional<std::size_t> cap_by_stages(const SevenLimits& limits, const StageSpline& stages, const PathRuns& path,
+std::optional<std::size_t> cap_by_stages(const AxesLimits& limits, const StageSpline& stages, const PathRuns& path,
                                          PathRun& run) {
   constexpr int kMostTries = 60;
   constexpr std::size_t kLooks = 24;

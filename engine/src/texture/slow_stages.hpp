@@ -13,7 +13,7 @@
 
 namespace gravure::texture {
 
-/// Caps every run by what U and V can, less what the stages' own motion takes of it: [M p]''' - X''' has M''' p,
+/// Caps every run by what U, V and W can, less what the stages' own motion takes of it: [M p]''' - X''' has M''' p,
 /// 3 M'' p', 3 M' p'' and X''' beside M p''', and so on for acceleration and speed; each is bounded from above. Without
 /// `place` the stages are taken to stand still.
 void cap_by_galvo(const PathTimingRequest& request, const StageSpline& stages, const SmoothPlace* place,
@@ -43,11 +43,11 @@ struct SlowDown {
 /// Looks at the stages all along and slows the runs round every place where a limit is broken, less and less with
 /// the distance from it; `gain` times as much as one place by itself would ask for, 1 or more. `most_speed`: points a
 /// second at each point (corner_feed()), or empty.
-SlowDown slow_stages(const SevenLimits& limits, const StageSpline& stages, const SmoothPlace& place,
+SlowDown slow_stages(const AxesLimits& limits, const StageSpline& stages, const SmoothPlace& place,
                      std::span<const double> most_speed, double gain, PathFeed& feed, PathRuns& path);
 
 /// Caps a run of the stages alone. The axis that cannot be kept within its limits, if there is one.
-std::optional<std::size_t> cap_by_stages(const SevenLimits& limits, const StageSpline& stages, const PathRuns& path,
+std::optional<std::size_t> cap_by_stages(const AxesLimits& limits, const StageSpline& stages, const PathRuns& path,
                                          PathRun& run);
 
 }  // namespace gravure::texture

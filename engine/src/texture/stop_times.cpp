@@ -57,7 +57,7 @@ double rest_to_rest_s(double distance, const AxisBounds& limits) {
 
 namespace {
 
-double slowest_s(const SevenAxes& from, const SevenAxes& to, const SevenLimits& limits, std::size_t first,
+double slowest_s(const SevenAxes& from, const SevenAxes& to, const AxesLimits& limits, std::size_t first,
                  std::size_t last) {
   const auto a = values_of(from);
   const auto b = values_of(to);
@@ -70,7 +70,7 @@ double slowest_s(const SevenAxes& from, const SevenAxes& to, const SevenLimits& 
 
 }  // namespace
 
-double stop_time_s(std::span<const SevenAxes> axes, std::span<const std::size_t> stops, const SevenLimits& limits,
+double stop_time_s(std::span<const SevenAxes> axes, std::span<const std::size_t> stops, const AxesLimits& limits,
                    std::size_t first, std::size_t last) {
   double sum = 0;
   for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
@@ -80,7 +80,7 @@ double stop_time_s(std::span<const SevenAxes> axes, std::span<const std::size_t>
 }
 
 double dilated_stop_time_s(std::span<const SevenAxes> axes, std::span<const std::size_t> stops,
-                           const SevenLimits& limits) {
+                           const AxesLimits& limits) {
   double sum = 0;
   for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
     const auto before = stages_of(axes[stops[k > 0 ? k - 1 : k]]);

@@ -19,14 +19,14 @@ bool turns(std::size_t axis) {
 }  // namespace
 
 PathLimits::PathLimits(const Plan& plan) : plan_(plan), periods_per_s_(to_double(plan.line.rate_hz)) {
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < plan.path->axes.size(); ++axis) {
     const double degrees = turns(axis) ? 180 / std::numbers::pi : 1;
     units_per_count_[axis] = degrees / to_double(plan.path->axes[axis].counts_per_unit);
   }
 }
 
 void PathLimits::take(const PathWindow& window, std::int64_t line) {
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < plan_.path->axes.size(); ++axis) {
     Extremes& seen = extremes_[axis];
     for (int place = 0; place <= kPlaces; ++place) {
       const double share = static_cast<double>(place) / kPlaces;
@@ -42,9 +42,9 @@ void PathLimits::take(const PathWindow& window, std::int64_t line) {
   }
 }
 
-std::array<AxisUse, kPathAxes.size()> PathLimits::uses() const {
-  std::array<AxisUse, kPathAxes.size()> uses;
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+std::vector<AxisUse> PathLimits::uses() const {
+  std::vector<AxisUse> uses(plan_.path->axes.size());
+  for (std::size_t axis = 0; axis < uses.size(); ++axis) {
     const Extremes& seen = extremes_[axis];
     const double unit = units_per_count_[axis];
     const double rate = periods_per_s_;
@@ -63,7 +63,7 @@ std::array<AxisUse, kPathAxes.size()> PathLimits::uses() const {
 std::vector<std::string> PathLimits::violations() const {
   std::vector<std::string> found;
   const auto uses = this->uses();
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < uses.size(); ++axis) {
     const PathAxisPlan& plan = plan_.path->axes[axis];
     const char* unit = turns(axis) ? "deg" : "mm";
     const auto hold = [&](const char* what, double value, const std::optional<Rational>& limit, double rounding,

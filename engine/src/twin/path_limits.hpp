@@ -16,7 +16,7 @@ class PathLimits {
  public:
   explicit PathLimits(const Plan& plan);
   void take(const PathWindow& window, std::int64_t line);
-  std::array<AxisUse, kPathAxes.size()> uses() const;
+  std::vector<AxisUse> uses() const;
   /// What is beyond its limit, each once, with the largest value and where it is.
   std::vector<std::string> violations() const;
 

@@ -75,7 +75,7 @@ class PathJudge {
         limits_(plan_),
         counts_per_mm_(to_double(path_.along_counts_per_mm)),
         pitch_counts_(to_double(plan_.line.pixel_pitch_um * path_.along_counts_per_mm / Rational(1000))) {
-    for (std::size_t axis = 0; axis < units_per_count_.size(); ++axis) {
+    for (std::size_t axis = 0; axis < path_.axes.size(); ++axis) {
       units_per_count_[axis] = 1 / to_double(path_.axes[axis].counts_per_unit);
     }
     report_.pulses = path_.pulses;
@@ -145,11 +145,11 @@ class PathJudge {
 
   Result<void> land(const PathWindow& window, double share, std::int64_t pulse, std::int64_t tick, double along_mm) {
     std::array<double, kPathAxes.size()> axes{};
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    for (std::size_t axis = 0; axis < path_.axes.size(); ++axis) {
       axes[axis] = axis_motion(window, axis, share).position * units_per_count_[axis];
     }
     const std::span<const double> joints(axes.data(), 5);
-    const kinematics::FieldPoint field{axes[5], axes[6], 0};
+    const kinematics::FieldPoint field{axes[5], axes[6], axes[kFocusAxis]};
     const kinematics::Spot spot = kinematics::forward(machine_, joints, field);
     displacement_.take(std::hypot(axes[5], axes[6]), pulse);
     if (options_.landed) {

@@ -14,8 +14,8 @@ namespace gravure::zones {
 namespace {
 
 constexpr std::size_t kStages = 5;
-constexpr std::size_t kAxes = kPathAxes.size();
-using Axes = std::array<double, kAxes>;
+constexpr std::size_t kAxes = kFocusAxis;  // zones are marked without one
+using Axes = std::array<double, kPathAxes.size()>;
 
 struct Limits {
   double speed = 0;

@@ -30,8 +30,8 @@ struct ColumnShape {
   std::size_t columns = 0;
   std::string unit;
 };
-/// Set-points (in the order of kPathAxes, then the path covered) and wanted points.
-const ColumnShape& set_point_columns();
+/// Set-points (in the order of kPathAxes, with W or without, then the path covered) and wanted points.
+const ColumnShape& set_point_columns(bool focus_axis);
 const ColumnShape& target_columns();
 
 inline constexpr std::int64_t kRowsPerChunk = 4096;

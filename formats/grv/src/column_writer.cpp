@@ -7,11 +7,14 @@
 
 namespace gravure::grv {
 
-const ColumnShape& set_point_columns() {
+const ColumnShape& set_point_columns(bool focus_axis) {
   static const ColumnShape shape{"set_points", 8,
                                  "counts of X Y Z A C U V and of the path covered, as /plan says; in each chunk "
                                  "differenced three times down the rows"};
-  return shape;
+  static const ColumnShape with_focus{"set_points", 9,
+                                      "counts of X Y Z A C U V W and of the path covered, as /plan says; in each chunk "
+                                      "differenced three times down the rows"};
+  return focus_axis ? with_focus : shape;
 }
 
 const ColumnShape& target_columns() {

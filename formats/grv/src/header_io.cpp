@@ -98,15 +98,15 @@ Result<std::optional<Shard>> read_shard(hid_t file, bool shard) {
   return std::optional<Shard>(range);
 }
 
-Result<void> check_root(hid_t file) {
+Result<void> check_root(hid_t file, std::uint32_t format_version) {
   GRAVURE_TRY(const std::string format, read_text_attribute(file, "format"));
   if (format != kFormat) {
     return Error{ErrorCode::bad_file, "attribute format is \"" + format + "\": must be \"" + kFormat + "\""};
   }
   GRAVURE_TRY(const auto version, read_attribute<std::uint32_t>(file, "format_version"));
-  if (version != ProgramHeader::kFormatVersion) {
+  if (version != format_version) {
     return Error{ErrorCode::version_mismatch, "attribute format_version is " + std::to_string(version) +
-                                                  ", the seal says " + std::to_string(ProgramHeader::kFormatVersion) +
+                                                  ", the seal says " + std::to_string(format_version) +
                                                   ": compile the job again"};
   }
   return {};
@@ -182,10 +182,10 @@ Result<std::vector<StoredLayer>> read_layers(hid_t file, std::size_t count) {
 
 }  // namespace
 
-Result<void> write_root(hid_t file) {
+Result<void> write_root(hid_t file, std::uint32_t format_version) {
   const Handle root(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
   GRAVURE_CHECK(write_text_attribute(root.get(), "format", kFormat));
-  GRAVURE_CHECK(write_attribute<std::uint32_t>(root.get(), "format_version", ProgramHeader::kFormatVersion));
+  GRAVURE_CHECK(write_attribute<std::uint32_t>(root.get(), "format_version", format_version));
   GRAVURE_CHECK(write_text_attribute(root.get(), "gravure_version", GRAVURE_VERSION));
   return write_text_attribute(root.get(), "units", kUnits);
 }
@@ -200,11 +200,16 @@ Result<void> write_header(hid_t file, hid_t layers_group, const ProgramHeader& h
   return write_set_points(file, header.set_points);
 }
 
-Result<ProgramHeader> read_header(hid_t file, const Layout& layout, bool shard) {
+Result<ProgramHeader> read_header(hid_t file, const Layout& layout, bool shard, std::uint32_t format_version) {
   ProgramHeader header;
+  header.format_version = format_version;
   const Handle root(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
-  GRAVURE_CHECK(check_root(root.get()));
+  GRAVURE_CHECK(check_root(root.get(), format_version));
   GRAVURE_TRY(header.plan, read_plan(file));
+  if (format_version_of(header.plan) != format_version) {
+    return Error{ErrorCode::bad_file, "format version " + std::to_string(format_version) + ": that of its plan is " +
+                                          std::to_string(format_version_of(header.plan))};
+  }
   GRAVURE_CHECK(read_job(file, header));
   GRAVURE_TRY(header.sources, read_sources(file));
   GRAVURE_TRY(header.bits_of_layer, read_shared_bits(file));

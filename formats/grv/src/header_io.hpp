@@ -17,11 +17,12 @@ namespace gravure::grv {
 /// name the object, the caller puts the file's name in front.
 
 /// Format, version and units of the whole file.
-Result<void> write_root(hid_t file);
+Result<void> write_root(hid_t file, std::uint32_t format_version);
 /// /plan, /job, /sources, /revolutions and the tables of /layers that come from the header.
 Result<void> write_header(hid_t file, hid_t layers_group, const ProgramHeader& header);
 
 /// Reads all that write_root() and write_header() wrote, and holds the plan's numbers beside the JSON against it.
-Result<ProgramHeader> read_header(hid_t file, const Layout& layout, bool shard);
+/// `format_version` is that of the seal.
+Result<ProgramHeader> read_header(hid_t file, const Layout& layout, bool shard, std::uint32_t format_version);
 
 }  // namespace gravure::grv

@@ -24,21 +24,24 @@ TargetNumbers numbers_of(const PathTarget& target) {
 
 }  // namespace
 
-std::vector<std::int64_t> rows_of(std::span<const PathSetPoint> points) {
+std::vector<std::int64_t> rows_of(std::span<const PathSetPoint> points, bool focus_axis) {
   std::vector<std::int64_t> rows;
-  rows.reserve(points.size() * set_point_columns().columns);
+  const std::size_t columns = set_point_columns(focus_axis).columns;
+  rows.reserve(points.size() * columns);
   for (const PathSetPoint& point : points) {
-    rows.insert(rows.end(), point.counts.begin(), point.counts.end());
+    rows.insert(rows.end(), point.counts.begin(), point.counts.begin() + static_cast<std::ptrdiff_t>(columns - 1));
     rows.push_back(point.along_counts);
   }
   return rows;
 }
 
-void set_points_from(std::span<const std::int64_t> rows, std::span<PathSetPoint> out) {
+void set_points_from(std::span<const std::int64_t> rows, bool focus_axis, std::span<PathSetPoint> out) {
+  const std::size_t axes = set_point_columns(focus_axis).columns - 1;
   auto next = rows.begin();
   for (PathSetPoint& point : out) {
-    for (std::int64_t& counts : point.counts) {
-      counts = *next++;
+    point = {};
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      point.counts[axis] = *next++;
     }
     point.along_counts = *next++;
   }

@@ -37,6 +37,7 @@ struct Contents {
   ColumnReader set_points;
   ColumnReader targets;
   bool shard = false;
+  std::uint32_t format_version = 0;
 
   /// Where the bits of a layer's chunk are; of no chunk where there is no such layer.
   ChunkAddress stored_at(ChunkAddress address) const {
@@ -103,8 +104,8 @@ Result<void> read_path(hid_t file, Contents& contents, std::uint64_t file_bytes)
   if (!path) {
     return {};
   }
-  GRAVURE_TRY(contents.set_points,
-              ColumnReader::open(file, set_point_columns(), set_points_of(contents.header.plan), file_bytes));
+  GRAVURE_TRY(contents.set_points, ColumnReader::open(file, set_point_columns(path->has_focus_axis()),
+                                                      set_points_of(contents.header.plan), file_bytes));
   if (path->targets > 0) {
     GRAVURE_TRY(contents.targets, ColumnReader::open(file, target_columns(), path->targets, file_bytes));
   }
@@ -113,7 +114,7 @@ Result<void> read_path(hid_t file, Contents& contents, std::uint64_t file_bytes)
 
 Result<void> read_contents(hid_t file, Contents& contents, std::uint64_t file_bytes) {
   const Layout& layout = contents.layout;
-  GRAVURE_TRY(contents.header, read_header(file, layout, contents.shard));
+  GRAVURE_TRY(contents.header, read_header(file, layout, contents.shard, contents.format_version));
   GRAVURE_TRY(contents.compression, check_bits(file, layout));
   const std::array<hsize_t, 2> shape = {static_cast<hsize_t>(layout.layers),
                                         static_cast<hsize_t>(layout.chunks_per_layer())};
@@ -247,9 +248,11 @@ Result<void> GrvSource::decode(const StoredChunk& chunk, std::span<std::byte> ou
 }
 
 Result<void> GrvSource::read_set_points(std::int64_t first, std::span<PathSetPoint> out) {
-  std::vector<std::int64_t> rows(out.size() * set_point_columns().columns);
+  const Plan& plan = contents_.header.plan;
+  const bool focus_axis = plan.path && plan.path->has_focus_axis();
+  std::vector<std::int64_t> rows(out.size() * set_point_columns(focus_axis).columns);
   GRAVURE_CHECK(contents_.set_points.read(channel_->file(), first, rows));
-  set_points_from(rows, out);
+  set_points_from(rows, focus_axis, out);
   return {};
 }
 
@@ -266,6 +269,7 @@ Result<GrvPart> open_part(std::unique_ptr<ByteFile> file) {
   Contents contents;
   contents.layout = sealed.seal.layout;
   contents.shard = sealed.seal.shard;
+  contents.format_version = sealed.seal.format_version;
   contents.tables = std::move(sealed.tables);
   GRAVURE_CHECK(read_hdf5(channel, contents));
   const Compression compression = contents.compression;

@@ -152,10 +152,10 @@ Result<Seal> decode_seal(std::span<const std::byte, Seal::kBytes> bytes, const s
   Seal seal;
   seal.shard = shard;
   seal.format_version = static_cast<std::uint32_t>(get_integer(&bytes[16], 4));
-  if (seal.format_version != ProgramHeader::kFormatVersion) {
+  if (seal.format_version < 1 || seal.format_version > kNewestFormatVersion) {
     return Error{ErrorCode::version_mismatch,
                  path + ": program format version " + std::to_string(seal.format_version) +
-                     ", this gravure reads version " + std::to_string(ProgramHeader::kFormatVersion) +
+                     ", this gravure reads versions 1 to " + std::to_string(kNewestFormatVersion) +
                      ": compile the job again with this gravure, or use the one that made the file"};
   }
   seal.file_bytes = get_integer(&bytes[24], 8);
@@ -205,10 +205,10 @@ Result<std::uint64_t> hash_surroundings(const ByteFile& file, const Layout& layo
 }
 
 Result<void> write_seal(ByteFile& file, const Layout& layout, const ChunkTables& tables, std::uint64_t offset_table_at,
-                        std::uint64_t stored_table_at, bool shard) {
+                        std::uint64_t stored_table_at, bool shard, std::uint32_t format_version) {
   Seal seal;
   seal.shard = shard;
-  seal.format_version = ProgramHeader::kFormatVersion;
+  seal.format_version = format_version;
   seal.layout = layout;
   seal.offset_table_at = offset_table_at;
   seal.stored_table_at = stored_table_at;

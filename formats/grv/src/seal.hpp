@@ -47,7 +47,7 @@ Result<std::uint64_t> hash_surroundings(const ByteFile& file, const Layout& layo
 /// Completes a written file: computes both hashes over what is on disk and writes the seal in front; nothing is kept
 /// back.
 Result<void> write_seal(ByteFile& file, const Layout& layout, const ChunkTables& tables, std::uint64_t offset_table_at,
-                        std::uint64_t stored_table_at, bool shard = false);
+                        std::uint64_t stored_table_at, bool shard = false, std::uint32_t format_version = 1);
 
 struct Sealed {
   Seal seal;

@@ -91,7 +91,7 @@ Result<OpenProgram> create_program(const std::shared_ptr<Hdf5Channel>& channel, 
   if (!program.file.valid()) {
     return write_failure("the HDF5 file");
   }
-  GRAVURE_CHECK(write_root(program.file.get()));
+  GRAVURE_CHECK(write_root(program.file.get(), options.focus_axis ? kFocusAxisFormatVersion : 1));
   GRAVURE_TRY(program.layers, create_group(program.file.get(), "layers"));
   const std::array<hsize_t, 2> tables = {static_cast<hsize_t>(layout.layers),
                                          static_cast<hsize_t>(layout.chunks_per_layer())};
@@ -118,7 +118,7 @@ class GrvSink final : public LineSink {
         tables_{std::vector<std::uint64_t>(count()), std::vector<std::uint64_t>(count())},
         checksums_(count()),
         fired_(count()),
-        set_points_(set_point_columns(), options),
+        set_points_(set_point_columns(options.focus_axis), options),
         targets_(target_columns(), options) {}
   GrvSink(const GrvSink&) = delete;
   GrvSink& operator=(const GrvSink&) = delete;
@@ -267,7 +267,7 @@ Result<void> GrvSink::put_rows(ColumnWriter& table, std::span<const std::int64_t
 
 Result<void> GrvSink::put_set_points(std::span<const PathSetPoint> next) {
   GRAVURE_CHECK(check_open());
-  return put_rows(set_points_, rows_of(next));
+  return put_rows(set_points_, rows_of(next, options_.focus_axis));
 }
 
 Result<void> GrvSink::put_targets(std::span<const PathTarget> next) {
@@ -293,9 +293,13 @@ Result<void> GrvSink::check_complete(const ProgramHeader& header) const {
       return refuse(layout_.describe(layout_.address_of(i)) + ": was not put");
     }
   }
-  if (header.format_version != ProgramHeader::kFormatVersion) {
+  if (header.format_version != format_version_of(header.plan)) {
     return refuse("format_version = " + std::to_string(header.format_version) + ": this gravure writes " +
-                  std::to_string(ProgramHeader::kFormatVersion));
+                  std::to_string(format_version_of(header.plan)) + " with such a plan");
+  }
+  if (options_.focus_axis != (header.plan.path && header.plan.path->has_focus_axis())) {
+    return refuse(std::string("the plan has ") + (options_.focus_axis ? "no" : "a") +
+                  " focus axis, its set-points were put " + (options_.focus_axis ? "with" : "without") + " W");
   }
   if (const auto checked = check_header(header, layout_, fired_, ErrorCode::bad_argument); !checked) {
     return refuse(checked.error().message);
@@ -342,7 +346,8 @@ Result<void> GrvSink::write_all(const ProgramHeader& header) {
   if (!closing.file.reset() || channel_->failure()) {
     return write_failure("the end of the file");
   }
-  return write_seal(channel_->file(), layout_, tables_, offset_table_at, stored_table_at, header.shard.has_value());
+  return write_seal(channel_->file(), layout_, tables_, offset_table_at, stored_table_at, header.shard.has_value(),
+                    header.format_version);
 }
 
 Result<void> GrvSink::finish(const ProgramHeader& header) {

@@ -10,9 +10,9 @@ namespace {
 using Store = KeyRows<FreeformJob>::Store;
 using Bound = std::optional<double> GivenBounds::*;
 
-constexpr std::array kSections =
-    std::to_array<std::string_view>({"job", "laser", "fpga", "surface", "texture", "split", "limits", "clamping",
-                                     "motion", "axis.X", "axis.Y", "axis.Z", "axis.A", "axis.C", "axis.U", "axis.V"});
+constexpr std::array kSections = std::to_array<std::string_view>(
+    {"job", "laser", "fpga", "surface", "texture", "split", "limits", "clamping", "motion", "axis.X", "axis.Y",
+     "axis.Z", "axis.A", "axis.C", "axis.U", "axis.V", "axis.W"});
 constexpr std::array<std::string_view, 1> kParents = {"axis"};
 constexpr std::array<std::string_view, 1> kModes = {"freeform"};
 constexpr std::array<std::string_view, 2> kFires = {"white", "black"};
@@ -42,6 +42,12 @@ void store_bound(FreeformJob& job, const Value& value) {
 template <std::size_t axis, Bound bound>
 constexpr Key axis_key(std::string_view section, std::string_view key, std::string_view unit, std::string_view most) {
   return decimal(section, key, unit, most, kTableOne, store_bound<axis, bound>);
+}
+
+/// Nobody has published limits of a focus axis: none are assumed.
+template <Bound bound>
+constexpr Key focus_key(std::string_view key, std::string_view unit, std::string_view most) {
+  return decided(decimal("axis.W", key, unit, most, "required with focus_axis", store_bound<kFocusAxis, bound>));
 }
 
 using Loop = std::optional<double> GivenServo::*;
@@ -146,9 +152,13 @@ constexpr std::array kTable = {
         [](FreeformJob& j, const Value& v) { j.split.time_share_percent = to_double(v.number); }, "0"),
     decimal("split", "cut", "sigma", "38", "8",
             [](FreeformJob& j, const Value& v) { j.split.cut = to_double(v.number); }),
+    Key{{"split", "focus_axis", Type::boolean, "", "", "", {}, Presence::optional, "false"},
+        [](FreeformJob& j, const Value& v) { j.split.focus_axis = v.boolean; }},
 
     decimal("limits", "fod_um", "um", kMostUm, "100",
             [](FreeformJob& j, const Value& v) { j.split.fod_um = to_double(v.number); }),
+    decimal("limits", "focus_mm", "mm", kMostMm, "not judged",
+            [](FreeformJob& j, const Value& v) { j.split.focus_mm = to_double(v.number); }),
     decimal("limits", "bia_deg", "deg", "90", "10",
             [](FreeformJob& j, const Value& v) { j.split.bia_deg = to_double(v.number); }),
     decimal("limits", "displacement_mm", "mm", kMostMm, "5",
@@ -212,6 +222,11 @@ constexpr std::array kTable = {
     axis_key<6, kJerk>("axis.V", "max_jerk_mm_s3", "mm/s^3", kMostJerk),
     servo_hz_key("axis.V", "1_000, assumed", store_loop<6, kHz>),
     servo_damping_key("axis.V", store_loop<6, kDamping>),
+    focus_key<kSpeed>("max_speed_mm_s", "mm/s", kMostSpeed),
+    focus_key<kAcceleration>("max_acceleration_mm_s2", "mm/s^2", kMostAcceleration),
+    focus_key<kJerk>("max_jerk_mm_s3", "mm/s^3", kMostJerk),
+    servo_hz_key("axis.W", "50, assumed", store_loop<kFocusAxis, kHz>),
+    servo_damping_key("axis.W", store_loop<kFocusAxis, kDamping>),
 };
 
 }  // namespace

@@ -82,6 +82,31 @@ const Section* table_of(const Document& document, std::string_view name) {
   return section != nullptr && section->is_table ? section : nullptr;
 }
 
+/// W has no limits but its own, and they are nothing without it.
+void check_focus_axis(const Document& document, Violations& violations) {
+  const Section* split = table_of(document, "split");
+  const Entry* wanted = split != nullptr ? split->find("focus_axis") : nullptr;
+  const Section* axis = table_of(document, "axis.W");
+  if (wanted != nullptr && wanted->value.boolean) {
+    for (const char* key : {"max_speed_mm_s", "max_acceleration_mm_s2", "max_jerk_mm_s3"}) {
+      if (axis == nullptr || axis->find(key) == nullptr) {
+        violations.add(
+            axis != nullptr ? axis->at : wanted->at,
+            "[axis.W] " + std::string(key) + " is missing: focus_axis needs " + expectation(*find_key("axis.W", key)));
+      }
+    }
+    return;
+  }
+  if (axis != nullptr) {
+    violations.add(axis->at, "[axis.W]: has a meaning only with [split] focus_axis = true; take it out");
+  }
+  const Section* limits = table_of(document, "limits");
+  if (const Entry* reach = limits != nullptr ? limits->find("focus_mm") : nullptr) {
+    violations.add(reach->at,
+                   named(*limits, *reach) + ": has a meaning only with [split] focus_axis = true; take it out");
+  }
+}
+
 }  // namespace
 
 void check_rules(const Document& document, Violations& violations) {
@@ -100,6 +125,7 @@ void check_rules(const Document& document, Violations& violations) {
                                       expectation(*find_key("texture", "step_um")));
     }
   }
+  check_focus_axis(document, violations);
   const Section* split = table_of(document, "split");
   if (split != nullptr && split->find("sigma_um") != nullptr) {
     for (const char* key : {"rule", "time_share_percent"}) {

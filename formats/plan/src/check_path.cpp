@@ -16,7 +16,7 @@ void check_limit(const std::string& key, const std::optional<Rational>& value, C
 }
 
 void check_axes(const PathPlan& path, Complaint& complaint) {
-  for (std::size_t i = 0; i < kPathAxes.size(); ++i) {
+  for (std::size_t i = 0; i < path.axes.size(); ++i) {
     const PathAxisPlan& axis = path.axes[i];
     const std::string key = "path.axes." + std::string(kPathAxes[i]) + ".";
     complaint.positive(key + "counts", axis.counts_per_unit);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <type_traits>
+
 #include "gravure/core/plan.hpp"
 
 namespace gravure::plan_json {
@@ -166,9 +169,18 @@ void describe_path(Archive& archive, P& path, R& rotary) {
   archive.field("targets", path.targets);
   archive.field("along_counts_per_mm", path.along_counts_per_mm);
   archive.section("axes", [&] {
-    for (std::size_t i = 0; i < kPathAxes.size(); ++i) {
+    for (std::size_t i = 0; i < kFocusAxis; ++i) {
       const bool linear = kPathAxes[i] != "A" && kPathAxes[i] != "C";
       archive.section(kPathAxes[i].data(), [&] { describe_path_axis(archive, path.axes[i], linear); });
+    }
+    auto focus = path.has_focus_axis() ? std::optional(path.axes[kFocusAxis]) : std::nullopt;
+    archive.optional_section(kPathAxes[kFocusAxis].data(), focus,
+                             [&](auto& axis) { describe_path_axis(archive, axis, true); });
+    if constexpr (!std::is_const_v<P>) {
+      path.axes.resize(kFocusAxis);
+      if (focus) {
+        path.axes.push_back(*focus);
+      }
     }
   });
   archive.optional_section("picture", path.picture, [&](auto& picture) {

@@ -32,7 +32,7 @@ gravure.jobFacts = () => {
   rows.push(['Pitch', `a pulse every ${number(job.pitch_um.value, 8)} µm of path`]);
   rows.push(['Time', `${gravure.duration(job.duration_s.value)} = ${grouped(job.ticks)} ticks, exactly`]);
   rows.push(['Clocks', `seed ${hertz(clock.seed_hz)}, FPGA ${hertz(clock.fpga_hz)}; a pulse slot is ${grouped(clock.ticks_per_slot)} ticks (${hertz(clock.pulse_hz.value)}), a servo period ${grouped(clock.slots_per_period)} slots = ${grouped(clock.ticks_per_period)} ticks`]);
-  rows.push(['Machine', `stages X Y Z A C, galvo U V; signs of the axes as in ${job.signs.replace('_', ' ')}`]);
+  rows.push(['Machine', `stages X Y Z A C, galvo U V${gravure.data.axes.length > 7 ? ', focus axis W' : ''}; signs of the axes as in ${job.signs.replace('_', ' ')}`]);
   for (const source of gravure.data.sources) rows.push([source.path, gravure.element('span', { class: 'mono hash' }, `SHA-256 ${source.sha256}`)]);
   gravure.at('job-facts').append(gravure.facts(rows));
 };

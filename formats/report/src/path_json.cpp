@@ -41,7 +41,7 @@ Json figures_json(const PathReport& report, const PathPlan& path) {
 
 Json axes_json(const report::PathReportData& data) {
   Json axes = Json::array();
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < data.verified.axes.size(); ++axis) {
     const AxisUse& use = data.verified.axes[axis];
     const PathAxisPlan& plan = data.header->plan.path->axes[axis];
     const bool turns = kPathAxes[axis] == "A" || kPathAxes[axis] == "C";

@@ -149,9 +149,15 @@ TEST(GrvDamage, IsNoticedForOtherFilesFoldersAndPipes) {
 TEST(GrvDamage, IsAVersionMismatchForAnotherFormatVersion) {
   const Folder folder;
   const std::string path = folder.file("a.grv");
+  for (const std::uint32_t version : {0U, kNewestFormatVersion + 1}) {
+    expect_ok(write_program(path, victim(), {}));
+    reseal(path, [version](grv::Seal& seal) { seal.format_version = version; });
+    expect_refused(path, ErrorCode::version_mismatch,
+                   "program format version " + std::to_string(version) + ", this gravure reads versions 1 to 2");
+  }
   expect_ok(write_program(path, victim(), {}));
-  reseal(path, [](grv::Seal& seal) { seal.format_version = 2; });
-  expect_refused(path, ErrorCode::version_mismatch, "program format version 2, this gravure reads version 1");
+  reseal(path, [](grv::Seal& seal) { seal.format_version = kFocusAxisFormatVersion; });
+  expect_refused(path, ErrorCode::version_mismatch, "attribute format_version is 1, the seal says 2");
 }
 
 TEST(GrvDamage, IsNoticedForASealThatLies) {

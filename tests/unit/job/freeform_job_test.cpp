@@ -114,8 +114,10 @@ tolerance_um = 0.5
 method = "adaptive"
 sigma_um = 3000
 cut = 4
+focus_axis = true
 [limits]
 fod_um = 50
+focus_mm = 1.5
 bia_deg = 5
 displacement_mm = 4
 landing_um = 2
@@ -127,6 +129,11 @@ signs = "post-processor"
 branch = "negative"
 stops = "points"
 servo_us = 100
+[axis.W]
+max_speed_mm_s = 80
+max_acceleration_mm_s2 = 2_000
+max_jerk_mm_s3 = 1e5
+servo_hz = 75
 [axis.C]
 max_speed_deg_s = 180
 max_jerk_deg_s3 = 3600
@@ -150,6 +157,12 @@ servo_damping = 0.6
   EXPECT_EQ(got.split.bia_deg, 5);
   EXPECT_EQ(got.split.displacement_mm, 4);
   EXPECT_EQ(got.split.landing_um, 2.0);
+  EXPECT_TRUE(got.split.focus_axis);
+  EXPECT_EQ(got.split.focus_mm, 1.5);
+  EXPECT_EQ(got.motion.limits[kFocusAxis].speed, 80.0);
+  EXPECT_EQ(got.motion.limits[kFocusAxis].acceleration, 2000.0);
+  EXPECT_EQ(got.motion.limits[kFocusAxis].jerk, 1e5);
+  EXPECT_EQ(got.motion.servos[kFocusAxis].natural_hz, 75.0);
   EXPECT_EQ(got.axes.origin_mm, (std::vector<double>{1, 2, -3.25}));
   EXPECT_EQ(got.axes.tilt_deg, (std::vector<double>{10, -5}));
   EXPECT_EQ(got.axes.signs, "post-processor");
@@ -223,6 +236,10 @@ const Wrong kWrongs[] = {
      "[texture] size_mm = 3: has a meaning only with hilbert_order; take it out"},
     {"RuleWithSigma", "rule   = \"time\"", "sigma_um = 5000\nrule   = \"time\"", kNotSo, "rule   = \"time\"",
      "[split] rule = \"time\": has no meaning with sigma_um (line 34); take one of them out"},
+    {"FocusAxisNobodyAskedFor", "[motion]", "[axis.W]\nservo_hz = 50\n[motion]", kNotSo, "[axis.W]",
+     "[axis.W]: has a meaning only with [split] focus_axis = true; take it out"},
+    {"ReachOfNoFocusAxis", "fod_um          = 100 ", "focus_mm = 2 ", kNotSo, "focus_mm",
+     "[limits] focus_mm = 2: has a meaning only with [split] focus_axis = true; take it out"},
     {"OriginOfTwo", "[motion]", "[clamping]\norigin_mm = [1, 2]\n[motion]", kNotSo, "[1, 2]",
      "[clamping] origin_mm = [1, 2]: must be [x, y, z], three numbers from -10_000 to 10_000 mm"},
     {"TiltBeyondATurn", "[motion]", "[clamping]\ntilt_deg = [0, 190]\n[motion]", kOutside, "190",
@@ -238,6 +255,25 @@ std::string wrong_name(const testing::TestParamInfo<Wrong>& info) {
   return info.param.name;
 }
 INSTANTIATE_TEST_SUITE_P(Files, FreeformRefusal, testing::ValuesIn(kWrongs), wrong_name);
+
+TEST(FreeformJob, WantsTheLimitsOfItsFocusAxis) {
+  std::string text = starter_with("[split]", "[split]\nfocus_axis = true");
+  const auto none = parse_freeform_job(text, "job.toml");
+  ASSERT_FALSE(none);
+  const std::string place = "job.toml:" + place_of(text, "focus_axis") + ": ";
+  for (const char* key : {"max_speed_mm_s", "max_acceleration_mm_s2", "max_jerk_mm_s3"}) {
+    EXPECT_NE(none.error().message.find(place + "[axis.W] " + key + " is missing: focus_axis needs a number"),
+              std::string::npos)
+        << none.error().message;
+  }
+  text += "\n[axis.W]\nmax_speed_mm_s = 80\nmax_jerk_mm_s3 = 1e5\n";
+  const auto two = parse_freeform_job(text, "job.toml");
+  ASSERT_FALSE(two);
+  EXPECT_EQ(two.error().message.find("job.toml:" + place_of(text, "[axis.W]") + ": [axis.W] max_acceleration_mm_s2"),
+            0U)
+      << two.error().message;
+  EXPECT_TRUE(parse_freeform_job(text + "max_acceleration_mm_s2 = 2000\n", "job.toml"));
+}
 
 TEST(FreeformJob, TellsAllThatIsMissing) {
   const auto job = parse_freeform_job("[job]\nmode = \"freeform\"\n[texture]\npath = \"p.csv\"\n", "j.toml");

@@ -34,12 +34,15 @@ std::vector<PathTarget> straight_targets(double length_mm, int count) {
 }
 
 Result<Compiled> compile_to(const std::string& path, const std::vector<PathInstant>& instants, const PathPulses& pulses,
-                            const std::vector<PathTarget>& targets = {}, const GrvOptions& options = {}) {
+                            const std::vector<PathTarget>& targets = {}, GrvOptions options = {},
+                            bool focus_axis = false) {
+  options.focus_axis = focus_axis;
   const SampledMotion motion(instants);
   ProgramHeader header;
   const Rational pitch_um = ratio(std::llround(pulses.pitch_mm * 1e6), 1000);
-  GRAVURE_TRY(header.plan, make_path_plan(request(pitch_um), motion.instants(), pulses.count,
-                                          static_cast<std::int64_t>(targets.size())));
+  const PathPlanRequest wanted = focus_axis ? path_test::with_focus_axis(request(pitch_um), -2, 2) : request(pitch_um);
+  GRAVURE_TRY(header.plan,
+              make_path_plan(wanted, motion.instants(), pulses.count, static_cast<std::int64_t>(targets.size())));
   header.job_text = "mode = \"freeform\"\n";
   GRAVURE_TRY(const auto sink,
               create_grv(path, 1, header.plan.rotary.lines_per_revolution, header.line_bytes(), options));
@@ -163,6 +166,51 @@ TEST(CompilePath, StoresEverySetPointAndWantedPoint) {
       ASSERT_NEAR(found[i].position_mm[1], targets[i].position_mm[1], 0.5e-9);
       ASSERT_NEAR(found[i].normal[2], 0.8, 0.5e-12);
     }
+  }
+}
+
+TEST(CompilePath, StoresTheFocusAxisInAFormatOfItsOwn) {
+  const Folder folder;
+  auto instants = eased_line(20, 9999);
+  const auto plain = compile_to(folder.file("p.grv"), instants, all_pulses(0.01, 1000));
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    instants[i].axes[kFocusAxis] = std::sin(static_cast<double>(i) / 700);
+  }
+  const auto again = compile_to(folder.file("again.grv"), instants, all_pulses(0.01, 1000));
+  const auto made = compile_to(folder.file("w.grv"), instants, all_pulses(0.01, 1000), {}, {}, true);
+  ASSERT_TRUE(plain && again && made) << made.error().message;
+  EXPECT_EQ(plain.value().source->header().format_version, 1U);
+  EXPECT_FALSE(plain.value().source->header().plan.path->has_focus_axis());
+  EXPECT_EQ(grv_test::load(folder.file("p.grv")), grv_test::load(folder.file("again.grv"))) << "no W, no trace of it";
+  EXPECT_EQ(made.value().source->header().format_version, 2U);
+  EXPECT_EQ(made.value().source->header().plan.path->axes.at(kFocusAxis).most, Rational(2));
+  std::vector<PathSetPoint> points(instants.size());
+  ASSERT_TRUE(plain.value().source->read_set_points(0, points));
+  EXPECT_EQ(points[700].counts[kFocusAxis], 0);
+  ASSERT_TRUE(made.value().source->read_set_points(0, points));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+      ASSERT_EQ(points[i].counts[axis], std::llround(instants[i].axes[axis] * 1e13)) << kPathAxes[axis];
+    }
+    ASSERT_EQ(points[i].along_counts, std::llround(instants[i].along_mm * 1e9));
+  }
+}
+
+TEST(PathProgram, IsRefusedWhereItsSinkWasMadeForOtherAxes) {
+  for (const bool focus_axis : {false, true}) {
+    const Folder folder;
+    const SampledMotion motion(even_line(0.1, 50));
+    ProgramHeader header;
+    header.plan =
+        make_path_plan(focus_axis ? path_test::with_focus_axis(request(10), -2, 2) : request(10), 51, 499, 0).value();
+    const auto sink = create_grv(folder.file("p.grv"), 1, 50, header.line_bytes(), {.focus_axis = !focus_axis}).value();
+    const auto made = compile_path(header, motion, all_pulses(0.01, 499), {}, *sink);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::bad_argument);
+    EXPECT_NE(made.error().message.find(focus_axis ? "a focus axis, its set-points were put without W"
+                                                   : "no focus axis, its set-points were put with W"),
+              std::string::npos)
+        << made.error().message;
   }
 }
 

@@ -39,6 +39,14 @@ inline std::vector<PathInstant> eased_line(double length_mm, int periods) {
   return instants;
 }
 
+/// With a focus axis that may go from `least_mm` to `most_mm`.
+inline PathPlanRequest with_focus_axis(PathPlanRequest request, int least_mm, int most_mm) {
+  request.path.axes.resize(kPathAxes.size());
+  request.path.axes.back().least = Rational(least_mm);
+  request.path.axes.back().most = Rational(most_mm);
+  return request;
+}
+
 /// At once at full speed.
 inline std::vector<PathInstant> even_line(double mm_per_period, int periods) {
   std::vector<PathInstant> instants(static_cast<std::size_t>(periods) + 1);

@@ -52,8 +52,8 @@ struct Case {
     ProgramHeader header;
     GRAVURE_TRY(header.plan,
                 make_path_plan(wanted, motion.instants(), pulses.count, static_cast<std::int64_t>(targets.size())));
-    GRAVURE_TRY(const auto sink,
-                create_grv(folder.file("p.grv"), 1, header.plan.rotary.lines_per_revolution, header.line_bytes(), {}));
+    GRAVURE_TRY(const auto sink, create_grv(folder.file("p.grv"), 1, header.plan.rotary.lines_per_revolution,
+                                            header.line_bytes(), {.focus_axis = header.plan.path->has_focus_axis()}));
     GRAVURE_CHECK(compile_path(header, motion, pulses, targets, *sink));
     GRAVURE_TRY(const auto source, open_grv(folder.file("p.grv")));
     return verify_path(*source, emulated(), options);
@@ -110,6 +110,36 @@ TEST(VerifyPath, SeesAnAxisThatStandsElsewhere) {
     instant.axes[6] += 0.002;
   }
   expect_one_violation(off.run(), "landing 2.");
+}
+
+/// Z stays while the surface rises by 0.2 mm: W takes it up, or the light is out of focus by as much.
+TEST(VerifyPath, FindsFocusWhereTheFocusAxisPutsIt) {
+  Case rising;
+  rising.targets = {{0, {0, 0, 3.5}, {0, 0, 1}}, {20, {20, 0, 3.7}, {0, 0, 1}}};
+  expect_one_violation(rising.run(), "focus offset 199.9");
+  for (PathInstant& instant : rising.instants) {
+    instant.axes[kFocusAxis] = 0.01 * instant.along_mm;
+  }
+  expect_one_violation(rising.run(), "focus offset 199.9");  // the plan has no W
+  rising.wanted = path_test::with_focus_axis(rising.wanted, 0, 1);
+  // 0.2 mm as X of FindsAMotionWithinItsLimits goes 10 mm.
+  rising.wanted.path.axes[kFocusAxis].limits = {ratio(25, 10), Rational(52), Rational(3560)};
+  const auto report = rising.run();
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report.value().violations, std::vector<std::string>());
+  EXPECT_LT(report.value().focus_offset_um.max, 0.0101 * report.value().half_slot_um);  // where it rises meanwhile
+  ASSERT_EQ(report.value().axes.size(), kPathAxes.size());
+  EXPECT_NEAR(report.value().axes[kFocusAxis].most, 0.2, 1e-9);
+  EXPECT_NEAR(report.value().axes[kFocusAxis].max_speed, 0.2 * 1.875 / 0.15, 1e-4);
+  Case low = rising;
+  low.wanted.path.axes[kFocusAxis].most = ratio(199, 1000);
+  expect_one_violation(low.run(), "axis W: position 0.2 mm");
+  Case slow = rising;
+  slow.wanted.path.axes[kFocusAxis].limits.max_speed = ratio(24, 10);
+  expect_one_violation(slow.run(), "axis W: speed 2.5 mm/s");
+  Case soft = rising;
+  soft.wanted.path.axes[kFocusAxis].limits.max_jerk = Rational(3400);
+  expect_one_violation(soft.run(), "axis W: jerk 3");
 }
 
 TEST(VerifyPath, SeesASetPointThatIsOff) {

@@ -55,6 +55,23 @@ TEST(PathPlanJson, ComesBackAsItWas) {
   EXPECT_EQ(back.value().rotary.lines_per_revolution, 1000);
 }
 
+TEST(PathPlanJson, HasAFocusAxisOrNoWordOfOne) {
+  EXPECT_EQ(plan_to_json(path_plan()).find("\"W\""), std::string::npos);
+  Plan plan = path_plan();
+  plan.path->axes.push_back(plan.path->axes[6]);
+  plan.path->axes.back().most = ratio(5, 4);
+  const std::string text = plan_to_json(plan);
+  const Result<Plan> back = plan_from_json(text);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(plan_to_json(back.value()), text);
+  ASSERT_TRUE(back.value().path->has_focus_axis());
+  EXPECT_EQ(back.value().path->axes[kFocusAxis].most, ratio(5, 4));
+  plan.path->axes.back().limits.max_jerk = Rational(0);
+  const Result<Plan> wrong = plan_from_json(plan_to_json(plan));
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message.find("path.axes.W.max_jerk"), std::string::npos) << wrong.error().message;
+}
+
 TEST(PathPlanJson, HasItsPathInPlaceOfARotaryAxis) {
   const auto json = nlohmann::json::parse(plan_to_json(path_plan()));
   EXPECT_EQ(json["mode"], "freeform");

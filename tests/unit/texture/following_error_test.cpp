@@ -37,10 +37,8 @@ class Given final : public PathMotion {
   std::function<Axes(double)> axes_;
 };
 
-SevenServos all_loops(const ServoLoop& loop) {
-  SevenServos servos;
-  servos.fill(loop);
-  return servos;
+AxesServos all_loops(const ServoLoop& loop) {
+  return AxesServos(kPathAxes.size(), loop);
 }
 
 Given all_axes(std::int64_t instants, const std::function<double(double)>& position) {
@@ -139,9 +137,9 @@ TEST(PredictFollowing, KnowsWhereTheSpotGoes) {
   const double v = 0.01;
   for (const double sense : {-1.0, 1.0}) {
     for (std::size_t moved = 0; moved < kPathAxes.size(); ++moved) {
-      SevenServos servos = all_loops(stiff);
+      AxesServos servos = all_loops(stiff);
       servos[moved] = soft;
-      const Given::Axes from{3, -4, 5, 0.3, 1.1, 0.5, -0.2};
+      const Given::Axes from{3, -4, 5, 0.3, 1.1, 0.5, -0.2, 0.4};
       const auto axes_at = [&](double time_s) {
         Given::Axes axes = from;
         axes[moved] += v * time_s;
@@ -156,13 +154,13 @@ TEST(PredictFollowing, KnowsWhereTheSpotGoes) {
       Given::Axes real = ordered;
       real[moved] -= 2 * v / (2 * std::numbers::pi * soft.natural_hz);
       // The point that the orders light up, seen from the head with the axes where they are.
-      const Vector3 light(ordered[0] + ordered[5], ordered[1] + ordered[6], ordered[2]);
+      const Vector3 light(ordered[0] + ordered[5], ordered[1] + ordered[6], ordered[2] + ordered[7]);
       Eigen::Matrix3d turn;
       for (int k = 0; k < 3; ++k) {
         turn.col(k) = table.turned(ordered[3], ordered[4], Vector3::Unit(k));
       }
       const Vector3 there = table.turned(real[3], real[4], turn.transpose() * light);
-      const Vector3 off = Vector3(real[0] + real[5], real[1] + real[6], real[2]) - there;
+      const Vector3 off = Vector3(real[0] + real[5], real[1] + real[6], real[2] + real[7]) - there;
       EXPECT_NEAR(errors.value().spot_mm.max, off.head<2>().norm(), 1e-7) << kPathAxes[moved];
       EXPECT_NEAR(errors.value().focus_mm.max, std::abs(off.z()), 1e-7) << kPathAxes[moved];
     }
@@ -171,7 +169,7 @@ TEST(PredictFollowing, KnowsWhereTheSpotGoes) {
 
 TEST(PredictFollowing, RefusesLoopsThatAreNone) {
   const Given still = all_axes(10, [](double) { return 1.0; });
-  SevenServos servos = assumed_servos();
+  AxesServos servos = assumed_servos();
   const auto none = predict_following(still, servos, {}, kServo_s, {});
   ASSERT_TRUE(none);
   EXPECT_EQ(none.value().spot_mm.max, 0);
@@ -181,6 +179,11 @@ TEST(PredictFollowing, RefusesLoopsThatAreNone) {
     const auto refused = predict_following(still, servos, {}, kServo_s, {});
     EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
     EXPECT_NE(refused.error().message.find("axis C"), std::string::npos);
+  }
+  EXPECT_EQ(assumed_servos(true).size(), kPathAxes.size());
+  for (const std::size_t axes : {0U, 6U, 9U}) {
+    EXPECT_EQ(predict_following(still, AxesServos(axes, ServoLoop{50, 1}), {}, kServo_s, {}).error().code,
+              ErrorCode::bad_argument);
   }
 }
 

@@ -56,12 +56,13 @@ INSTANTIATE_TEST_SUITE_P(Sigmas, ProveSevenAxes,
 
 /// What prove_limits() says of the cubics is what ten looks a period find, and no less.
 TEST(ProveLimits, FindsWhatTenTimesTheDensityFinds) {
-  const Fixture f(3, 3);
+  Fixture f(3, 3);
+  f.request.limits.push_back({50, 2000, 200'000});  // W
   const auto proven = prove_seven_axes(f.request, {});
   ASSERT_TRUE(proven);
   const std::vector<PathInstant> at = all_instants(*proven.value().path.motion);
   const double h = f.request.servo_s;
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < f.request.limits.size(); ++axis) {
     double most[3] = {};
     for (std::size_t k = 0; k + 1 < at.size(); ++k) {
       const std::array<double, 4> x{at[k > 0 ? k - 1 : 0].axes[axis], at[k].axes[axis], at[k + 1].axes[axis],
@@ -173,12 +174,64 @@ TEST(TimeFiveAxes, IsTheStopModelAndKeepsLimits) {
   expect_limits_kept(*corners.value().motion, f.request);
 }
 
+/// [U V W] reaches from the stages to the spot: with W the light is on the surface, without it it is off by as much.
+TEST(FocusAxis, TakesUpWhatTheStagesLeaveAlongTheBeam) {
+  Fixture f(4, 6);
+  const auto without = prove_seven_axes(f.request, {});
+  ASSERT_TRUE(without) << without.error().message;
+  f.request.limits.push_back({50, 2000, 200'000});
+  const auto with = prove_seven_axes(f.request, {});
+  ASSERT_TRUE(with) << with.error().message;
+  EXPECT_TRUE(broken(with.value().uses).empty()) << words(broken(with.value().uses));
+  ASSERT_EQ(with.value().uses.size(), 24U);
+  const auto off_mm = [&f](const PathInstant& at, const Vector3& point) {
+    const std::span<const double> joints(at.axes.data(), 5);
+    const kinematics::FieldPoint field{at.axes[5], at.axes[6], at.axes[kFocusAxis]};
+    return (kinematics::forward(f.machine, joints, field).position_mm - point).norm();
+  };
+  double most_without = 0;
+  for (const ProvenPath* path : {&without.value(), &with.value()}) {
+    std::size_t point = 0;
+    for (const PathInstant& at : all_instants(*path->path.motion)) {
+      if (point < f.pulse_mm.size() && at.along_mm == f.pulse_mm[point]) {  // it rests on every point
+        const double off = off_mm(at, f.split.targets[point++].position_mm);
+        if (path == &with.value()) {
+          EXPECT_LT(off, 1e-9) << point;
+        } else {
+          EXPECT_EQ(at.axes[kFocusAxis], 0);
+          most_without = std::max(most_without, off);
+        }
+      }
+    }
+    EXPECT_EQ(point, f.pulse_mm.size());
+  }
+  EXPECT_GT(most_without, 0.01);
+}
+
+/// A slow W makes the whole motion slower, and is kept within its limits.
+TEST(FocusAxis, SlowsTheMotionWhereItIsWhatIsSlow) {
+  Fixture f(4, 6);
+  f.request.limits.push_back({50, 2000, 200'000});
+  const auto fast = prove_seven_axes(f.request, {});
+  ASSERT_TRUE(fast);
+  f.request.limits.back() = {50, 2, 200};
+  const auto slow = prove_seven_axes(f.request, {});
+  ASSERT_TRUE(slow) << slow.error().message;
+  EXPECT_GT(slow.value().path.time_s, 1.2 * fast.value().path.time_s);
+  EXPECT_TRUE(broken(slow.value().uses).empty()) << words(broken(slow.value().uses));
+  EXPECT_GT(slow.value().uses[kFocusAxis * 3 + 1].share(), 0.3);
+  f.request.limits.back().acceleration = 0;
+  EXPECT_NE(time_seven_axes(f.request, {}).error().message.find("axis W"), std::string::npos);
+  f.request.limits.resize(6);
+  EXPECT_EQ(time_seven_axes(f.request, {}).error().code, ErrorCode::bad_argument);
+}
+
 /// More than one thread finds what one finds.
 TEST(ProveLimits, SaysTheSameWhateverTheThreads) {
   const Fixture f(4, 2);
   const auto timed = time_seven_axes(f.request, {});
   ASSERT_TRUE(timed);
-  SevenLimits tight = f.request.limits;
+  AxesLimits tight = f.request.limits;
   tight[5].jerk /= 2;
   std::array<std::vector<LimitUse>, 3> uses;
   std::array<std::int64_t, 3> breaches{};
@@ -198,9 +251,10 @@ TEST(ProveLimits, SaysTheSameWhateverTheThreads) {
 }
 
 TEST(TimeSevenAxes, RefusesWhatWouldNeverEndBeforeReckoning) {
-  const Fixture f(3, 3);
+  Fixture f(3, 3);
+  f.request.limits.push_back({50, 2000, 200'000});  // W
   EXPECT_TRUE(time_seven_axes(f.request, {}));
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < f.request.limits.size(); ++axis) {
     for (double AxisBounds::*bound : {&AxisBounds::speed, &AxisBounds::acceleration, &AxisBounds::jerk}) {
       PathTimingRequest slow = f.request;
       slow.limits[axis].*bound = 1e-40;

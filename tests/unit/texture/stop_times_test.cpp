@@ -17,7 +17,7 @@ namespace {
 constexpr double kStep_mm = 40.0 / 255;
 
 TEST(RestToRest, TakesThePublishedTimesForOneStep) {
-  const SevenLimits limits = published_limits();
+  const AxesLimits limits = published_limits();
   EXPECT_NEAR(rest_to_rest_s(kStep_mm, limits[0]) * 1000, 89.84052, 1e-5);
   EXPECT_NEAR(rest_to_rest_s(-kStep_mm, limits[5]) * 1000, 17.12208, 1e-5);
   EXPECT_EQ(rest_to_rest_s(0, limits[0]), 0);
@@ -55,7 +55,7 @@ TEST(RestToRest, DecidesHowTheJerkOfTableOneIsRead) {
     limits.jerk = jerk;
     return 65'535 * rest_to_rest_s(kStep_mm, limits) / 60;
   };
-  const SevenLimits limits = published_limits();
+  const AxesLimits limits = published_limits();
   EXPECT_NEAR(minutes(limits[0], 10), 868.05, 0.005);
   EXPECT_NEAR(minutes(limits[5], 1000), 187.02, 0.005);
   EXPECT_NEAR(minutes(limits[0], 10'000), 98.13, 0.005);
@@ -103,7 +103,7 @@ TEST(RestingPoints, OfTheHilbertCurveLeaveThePublishedRuns) {
 /// 0.02.
 TEST(StopTime, IsThePublishedOne) {
   const Published& p = published();
-  const SevenLimits limits = published_limits();
+  const AxesLimits limits = published_limits();
   const auto minutes = [&limits](const auto& axes, const auto& stops, std::size_t first, std::size_t last) {
     return stop_time_s(axes, stops, limits, first, last) / 60;
   };

@@ -11,12 +11,15 @@
 
 namespace gravure {
 
-/// The axes of a program that follows a path, in this order everywhere: five stages, then the galvo.
-inline constexpr std::array<std::string_view, 7> kPathAxes{"X", "Y", "Z", "A", "C", "U", "V"};
+/// The axes of a program that follows a path, in this order everywhere: five stages, the galvo and, where the head has
+/// one, the focus axis along the beam.
+inline constexpr std::array<std::string_view, 8> kPathAxes{"X", "Y", "Z", "A", "C", "U", "V", "W"};
+/// Where W stands among them, and how many axes there are without it.
+inline constexpr std::size_t kFocusAxis = 7;
 
 /// Where all axes are ordered to stand at one instant of the servo: mm, A and C in rad with their turns counted on.
 struct PathInstant {
-  std::array<double, kPathAxes.size()> axes{};
+  std::array<double, kPathAxes.size()> axes{};  ///< W is 0 where there is none
   /// Length of path on the surface that the spot has covered, mm; never less than an instant before, and the same
   /// while the light has no way to go (dark moves).
   double along_mm = 0;

@@ -183,7 +183,9 @@ struct PathPicture {
 /// says. line.pixel_pitch_um is the pitch of the pulses along the path. No A-B axis turns: of `rotary` there are
 /// lines_per_revolution and ticks_per_revolution alone, and nothing of `ab`.
 struct PathPlan {
-  std::array<PathAxisPlan, kPathAxes.size()> axes;
+  /// In the order of kPathAxes; with the focus axis one more.
+  std::vector<PathAxisPlan> axes = std::vector<PathAxisPlan>(kFocusAxis);
+  bool has_focus_axis() const { return axes.size() > kFocusAxis; }
   Rational along_counts_per_mm = 0;  ///< of the length of path covered, stored beside the axes
   std::int64_t pulses = 0;           ///< along the path, fired or not
   std::int64_t targets = 0;          ///< points of the wanted path that the program stores; 0: none

@@ -58,7 +58,7 @@ inline std::vector<LineSetPoints> kinds_of_lines(const Plan& plan) {
 
 /// Where the axes of a path program are ordered to stand at the start of a line, in the counts of the plan's path.
 struct PathSetPoint {
-  std::array<std::int64_t, kPathAxes.size()> counts{};
+  std::array<std::int64_t, kPathAxes.size()> counts{};  ///< W is 0 where the plan has none
   std::int64_t along_counts = 0;
 
   friend bool operator==(const PathSetPoint&, const PathSetPoint&) = default;
@@ -84,10 +84,16 @@ struct Shard {
   friend bool operator==(const Shard&, const Shard&) = default;
 };
 
+/// Programs with a focus axis have format version 2, all others 1: what an older gravure can read it can still read.
+inline constexpr std::uint32_t kFocusAxisFormatVersion = 2;
+inline constexpr std::uint32_t kNewestFormatVersion = kFocusAxisFormatVersion;
+inline std::uint32_t format_version_of(const Plan& plan) {
+  return plan.path && plan.path->has_focus_axis() ? kFocusAxisFormatVersion : 1;
+}
+
 /// Everything in a program but the bits of its lines.
 struct ProgramHeader {
-  static constexpr std::uint32_t kFormatVersion = 1;
-  std::uint32_t format_version = kFormatVersion;
+  std::uint32_t format_version = 1;  ///< as read; a sink writes format_version_of()
   Plan plan;
   std::string job_text;  ///< the job file, byte for byte
   std::string job_path;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,7 +17,7 @@ struct AxisTrace {
   std::vector<double> most;
 };
 
-using PathTraces = std::array<AxisTrace, kPathAxes.size()>;
+using PathTraces = std::vector<AxisTrace>;  ///< of the axes of the plan
 
 /// Reads all set-points of a path program in blocks; at most `most_stretches` of them are kept an axis. A set-point on
 /// the border of two stretches counts in both, so that what is drawn has no gaps. Fails as read_set_points() does.

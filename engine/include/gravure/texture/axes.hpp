@@ -9,7 +9,7 @@
 
 namespace gravure::texture {
 
-/// Where five stages and the galvo stand for one point of a texture: [A] eqs 6 to 13.
+/// Where five stages and the galvo stand for one point of a texture, [A] eqs 6 to 13, and what is left along the beam.
 struct SevenAxes {
   double x_mm = 0;
   double y_mm = 0;
@@ -18,7 +18,7 @@ struct SevenAxes {
   double c_rad = 0;  ///< turns counted on along the path
   double u_mm = 0;
   double v_mm = 0;
-  double w_mm = 0;  ///< what no axis takes up: the focus offset
+  double w_mm = 0;  ///< the focus offset: where a focus axis stands, or what no axis takes up
 };
 
 /// The axes of an X-Y-Z-A-C machine (kinematics::xyzac_machine) along a path: the stages bring each point of `stages`

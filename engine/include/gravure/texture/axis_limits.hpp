@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "gravure/core/path_motion.hpp"
 #include "gravure/kinematics/machine.hpp"
@@ -14,21 +14,26 @@ struct AxisBounds {
   double jerk = 0;
 };
 
-/// In the order of kPathAxes: X, Y, Z, A, C, U, V.
-using SevenLimits = std::array<AxisBounds, kPathAxes.size()>;
+/// In the order of kPathAxes: X, Y, Z, A, C, U, V and, where there is a focus axis, W.
+using AxesLimits = std::vector<AxisBounds>;
+
+inline bool has_focus_axis(const AxesLimits& limits) {
+  return limits.size() > kFocusAxis;
+}
 
 /// The machine of [A] table 1, its jerk read as m/s^2 per ms. Accelerations and jerks of X, Y, U and V follow from the
 /// published times of one step of the texture (89.84052 ms and 17.12208 ms); those of A and C are fitted to the times
 /// with five axes (127.65 and 151.02 min), that of Z does not show in them and is half of X's. Speeds decide nothing
-/// there and are not known: those here are what such axes reach.
-SevenLimits published_limits() noexcept;
+/// there and are not known: those here are what such axes reach. [A] has no focus axis.
+AxesLimits published_limits();
 
-/// The limits of a machine with joints X, Y, Z, A and C, in any order, and of its head; those it does not state are
-/// taken from `otherwise`. out_of_range, with the axis, for a limit that is not above 0.
-Result<SevenLimits> limits_of(const kinematics::Machine& machine, const SevenLimits& otherwise);
+/// The limits of a machine with joints X, Y, Z, A and C, in any order, and of its head; those it does not state, and W,
+/// are taken from `otherwise`. out_of_range, with the axis, for a limit that is not above 0.
+Result<AxesLimits> limits_of(const kinematics::Machine& machine, const AxesLimits& otherwise);
 
-/// out_of_range, with the axis, for a limit that is no number above 0.
-Result<void> check_limits(const SevenLimits& limits);
+/// bad_argument unless there are seven or, with W, eight; out_of_range, with the axis, for one that is no number above
+/// 0.
+Result<void> check_limits(const AxesLimits& limits);
 
 /// Where X-Y-Z-A-C machines put a point of the workpiece: head coordinates are
 /// diag(1, sense, 1) Rx(sense A) Rz(sense C) (p - centre) - (X, Y, Z). sense is -1 for [A] eqs 6 to 13 (M), 1 for [C2].

@@ -13,13 +13,13 @@ namespace gravure::texture {
 /// What motion along a path has to keep to.
 struct PathMachine {
   kinematics::Machine machine;  ///< as kinematics::xyzac_machine() makes it
-  SevenLimits limits;
+  AxesLimits limits;
   Stops stops = Stops::corners;
   double servo_s = 50e-6;
   kinematics::Branch branch = kinematics::Branch::positive;  ///< sign of A
   Clamping clamping = {};                                    ///< how the workpiece lies
   bool corner_law = false;                                   ///< PathTimingRequest::corner_law
-  SevenServos servos = assumed_servos();                     ///< for the stages' lag
+  AxesServos servos = assumed_servos();                      ///< for the stages' lag
   std::int64_t memory_bytes = 0;                             ///< PathTimingRequest::memory_bytes
 };
 

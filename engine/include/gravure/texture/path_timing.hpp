@@ -20,7 +20,7 @@ struct PathTimingRequest {
   std::span<const SevenAxes> axes;
   std::span<const double> pulse_mm;  ///< PathInstant::along_mm at each point: pulse_lengths_mm()
   RotaryTable table;
-  SevenLimits limits;
+  AxesLimits limits;
   Stops stops = Stops::corners;
   double servo_s = 50e-6;
   /// The stages' place along the path is the texture's, averaged over a window of which this is the standard deviation.
@@ -30,9 +30,9 @@ struct PathTimingRequest {
   /// Lets the stages pass corners no faster than the law of a Gaussian of `sigma_points` allows (corner_speed_mm_s()),
   /// where the path is straight for three sigma to both sides: nothing more where the split is that Gaussian.
   bool corner_law = false;
-  SevenServos servos = assumed_servos();  ///< for TimedPath::stage_lag_mm
-  std::int64_t memory_bytes = 0;          ///< check_planning_memory(); 0: as much as it takes
-  Progress* progress = nullptr;           ///< told how far proofs are, in servo periods; each proof adds its own
+  AxesServos servos = assumed_servos();  ///< for TimedPath::stage_lag_mm
+  std::int64_t memory_bytes = 0;         ///< check_planning_memory(); 0: as much as it takes
+  Progress* progress = nullptr;          ///< told how far proofs are, in servo periods; each proof adds its own
 };
 
 /// Motion along a path within limits. It holds what it needs of the request.
@@ -49,15 +49,15 @@ struct TimedPath {
   int passes = 0;          ///< times that the limits were looked at before none was broken
 };
 
-/// Motion of all seven axes. Between two resting points the spot makes the shortest jerk-limited move from rest to rest
-/// that U and V can, straight over the plane, lengthened to whole servo periods; at each it stands exactly on its
-/// point. The stages do not rest: they follow the split's path (cubic splines through its points) by the texture's own
-/// place along it, smoothed in time, and U and V reach from there to the spot: [U V w] = M (p - p'), both moving.
-/// Where stages would leave their limits the moves round there are slowed until none does. Looks at two places or more
-/// a point; prove_limits() and prove_seven_axes() look at every instant.
-/// out_of_range for fewer than two points, a servo period that is not 1 us to 1 s, limits that are not above 0, points
-/// that no timing can keep within limits (a jump of an axis), and motion longer than a program holds or too long to be
-/// planned: these are found from lower bounds of the time, before memory is asked for; cancelled on request.
+/// Motion of all seven axes, and of the focus axis where the limits have one. Between two resting points the spot makes
+/// the shortest jerk-limited move from rest to rest that U and V can, straight over the plane, lengthened to whole
+/// servo periods; at each it stands exactly on its point. The stages do not rest: they follow the split's path (cubic
+/// splines through its points) by the texture's own place along it, smoothed in time, and U and V reach from there to
+/// the spot: [U V w] = M (p - p'), both moving; W is w. Where stages would leave their limits the moves round there are
+/// slowed until none does. Looks at two places or more a point; prove_limits() and prove_seven_axes() look at every
+/// instant. out_of_range for fewer than two points, a servo period that is not 1 us to 1 s, limits that are not above
+/// 0, points that no timing can keep within limits (a jump of an axis), and motion longer than a program holds or too
+/// long to be planned: these are found from lower bounds of the time, before memory is asked for; cancelled on request.
 Result<TimedPath> time_seven_axes(const PathTimingRequest& request, const CancelToken& cancel);
 
 /// Motion whose every instant has been looked at.

@@ -41,9 +41,9 @@ using LimitBreach = std::function<void(const LimitUse&)>;
 /// Every limit of every axis over the whole of a motion, by the cubics that the servo runs between set-points
 /// (cubic_motion()): largest and smallest speed of each cubic, its acceleration at both ends, its jerk. These are the
 /// extremes of the continuous motion, so no density of looking could find more. Errors as PathMotion::read(); cancelled
-/// on request. More than one of `threads` read different parts at once, which the motion must bear; `breach` is told
-/// one at a time, in any order then. `progress` is told how many periods are done.
-Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const SevenLimits& limits, double servo_s,
+/// on request; bad_argument as check_limits(). More than one of `threads` read different parts at once, which the
+/// motion must bear; `breach` is told one at a time, in any order then. `progress` is told how many periods are done.
+Result<std::vector<LimitUse>> prove_limits(const PathMotion& motion, const AxesLimits& limits, double servo_s,
                                            const CancelToken& cancel, const LimitBreach& breach = {}, int threads = 1,
                                            Progress* progress = nullptr);
 

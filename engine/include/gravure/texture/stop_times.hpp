@@ -34,13 +34,13 @@ double rest_to_rest_s(double distance, const AxisBounds& limits);
 
 /// The time model of [A]: at every one of `stops` the axes `first` to `last` (of kPathAxes) rest, between two of them
 /// the slowest counts. `last` is one past.
-double stop_time_s(std::span<const SevenAxes> axes, std::span<const std::size_t> stops, const SevenLimits& limits,
+double stop_time_s(std::span<const SevenAxes> axes, std::span<const std::size_t> stops, const AxesLimits& limits,
                    std::size_t first, std::size_t last);
 
 /// The seven-axis model of [A] with the stages' limits: U and V rest at every one of `stops`, and the times between are
 /// stretched each by itself where a stage's mean speed, or its second difference over the time, is beyond its limits.
 /// A model only, as are both: the stages' jerk and the change of the times themselves are left out.
 double dilated_stop_time_s(std::span<const SevenAxes> axes, std::span<const std::size_t> stops,
-                           const SevenLimits& limits);
+                           const AxesLimits& limits);
 
 }  // namespace gravure::texture

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -16,7 +15,7 @@
 
 namespace gravure {
 
-/// The machine that a path plan names: joints X Y Z A C, head with U and V.
+/// The machine that a path plan names: joints X Y Z A C, head with U and V; W is the place in its field along the beam.
 kinematics::Machine path_machine(const PathPlan& path);
 
 /// The most that is asked of an axis: mm or degrees, and per s, s^2 and s^3, by the cubics of the stored set-points
@@ -43,20 +42,20 @@ struct PulseFigure {
 struct PathReport {
   std::int64_t lines = 0;  ///< executed by the device
   std::int64_t ticks = 0;
-  std::int64_t pulses = 0;       ///< along the path
-  std::int64_t fired = 0;        ///< what the gate let through
-  bool bits_compared = false;    ///< with `wanted`
-  std::int64_t misplaced = 0;    ///< fired in a slot that is not the nearest to any pulse's place, or twice
-  std::int64_t missing = 0;      ///< wanted and not fired
-  std::int64_t unwanted = 0;     ///< fired though their bit is 0
-  PulseFigure spacing_um;        ///< along the path, from where the pulse belongs
-  double half_slot_um = 0;       ///< half a slot at the greatest speed of a pulse
-  bool points_compared = false;  ///< with wanted points
-  PulseFigure focus_offset_um;   ///< FOD: the wanted point from focus, along the beam
-  PulseFigure incidence_deg;     ///< BIA: beam and normal of the surface
-  PulseFigure displacement_mm;   ///< of the galvo from its centre
-  PulseFigure landing_um;        ///< from the wanted point to the beam, across it
-  std::array<AxisUse, kPathAxes.size()> axes;
+  std::int64_t pulses = 0;              ///< along the path
+  std::int64_t fired = 0;               ///< what the gate let through
+  bool bits_compared = false;           ///< with `wanted`
+  std::int64_t misplaced = 0;           ///< fired in a slot that is not the nearest to any pulse's place, or twice
+  std::int64_t missing = 0;             ///< wanted and not fired
+  std::int64_t unwanted = 0;            ///< fired though their bit is 0
+  PulseFigure spacing_um;               ///< along the path, from where the pulse belongs
+  double half_slot_um = 0;              ///< half a slot at the greatest speed of a pulse
+  bool points_compared = false;         ///< with wanted points
+  PulseFigure focus_offset_um;          ///< FOD: the wanted point from focus, along the beam
+  PulseFigure incidence_deg;            ///< BIA: beam and normal of the surface
+  PulseFigure displacement_mm;          ///< of the galvo from its centre
+  PulseFigure landing_um;               ///< from the wanted point to the beam, across it
+  std::vector<AxisUse> axes;            ///< those of the plan
   std::vector<std::string> violations;  ///< each once, with where; empty: within limits
   std::vector<std::string> notes;
 };

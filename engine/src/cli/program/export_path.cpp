@@ -11,6 +11,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "folder_output.hpp"
@@ -25,17 +26,30 @@
 namespace gravure::cli {
 namespace {
 
-using AxisPlaces = std::array<double, kPathAxes.size()>;
-constexpr double kWritten = 0.6e-9;  // half of the last digit written, and the reader's rounding
+using AxisPlaces = std::array<double, kPathAxes.size()>;  // W is 0 where there is none
+constexpr double kWritten = 0.6e-9;                       // half of the last digit written, and the reader's rounding
 constexpr int kFrameBits = 20;
-constexpr std::string_view kTableHead = "t_s,X_mm,Y_mm,Z_mm,A_deg,C_deg,U_mm,V_mm,along_mm\n";
+
+/// The axes that NC programs move; U and V are the galvo's.
+std::span<const std::size_t> nc_axes(const PathPlan& path) {
+  static constexpr std::array<std::size_t, nc::kMostStages> kAxes{0, 1, 2, 3, 4, kFocusAxis};
+  return std::span(kAxes).first(path.has_focus_axis() ? nc::kMostStages : nc::kStages);
+}
+
+std::string table_head(const PathPlan& path) {
+  std::string head = "t_s";
+  for (std::size_t axis = 0; axis < path.axes.size(); ++axis) {
+    head += fmt::format(",{}_{}", kPathAxes[axis], axis_turns(axis) ? "deg" : "mm");
+  }
+  return head + ",along_mm\n";
+}
 
 /// The set-points of a program in mm and degrees.
 class Places {
  public:
   explicit Places(LineSource& program) : points_(program) {
     const PathPlan& path = *program.header().plan.path;
-    for (std::size_t axis = 0; axis < units_.size(); ++axis) {
+    for (std::size_t axis = 0; axis < path.axes.size(); ++axis) {
       units_[axis] = (axis_turns(axis) ? 180 / std::numbers::pi : 1) / to_double(path.axes[axis].counts_per_unit);
     }
     along_unit_ = 1 / to_double(path.along_counts_per_mm);
@@ -62,7 +76,8 @@ class Places {
 
 nc::StagePlace stages_of(const AxisPlaces& places) {
   nc::StagePlace stages{};
-  std::copy_n(places.begin(), stages.size(), stages.begin());
+  std::copy_n(places.begin(), nc::kStages, stages.begin());
+  stages[nc::kStages] = places[kFocusAxis];
   return stages;
 }
 
@@ -78,6 +93,7 @@ class Exporter {
         places_(program),
         step_(periods_per_block),
         period_s_(1 / to_double(plan_.line.rate_hz)),
+        stages_(nc_axes(*plan_.path).size()),
         folder_(folder) {}
 
   std::int64_t blocks() const { return (places_.total() - 2) / step_ + 1; }
@@ -94,12 +110,12 @@ class Exporter {
     GRAVURE_TRY(TextOutput g_code, TextOutput::create(folder_.file("stages.ngc").string()));
     GRAVURE_TRY(TextOutput pvt, TextOutput::create(folder_.file("stages.pvt").string()));
     GRAVURE_TRY(const AxisPlaces start, places_.at(0));
-    g_code.text() += nc::g_code_start(stages_of(start), plan_.title);
-    pvt.text() += nc::pvt_start(stages_of(start), plan_.title);
+    g_code.text() += nc::g_code_start(stages_of(start), plan_.title, stages_);
+    pvt.text() += nc::pvt_start(stages_of(start), plan_.title, stages_);
     for (std::int64_t number = 0; number < blocks(); ++number) {
       GRAVURE_TRY(const nc::StageBlock block, this->block(number));
-      nc::append_g_code(block, g_code.text());
-      nc::append_pvt(block, pvt.text());
+      nc::append_g_code(block, g_code.text(), stages_);
+      nc::append_pvt(block, pvt.text(), stages_);
       if (!g_code.flush(false) || !pvt.flush(false)) {
         break;
       }
@@ -113,13 +129,13 @@ class Exporter {
 
   Result<void> write_axes() {
     GRAVURE_TRY(TextOutput table, TextOutput::create(folder_.file("axes.csv").string()));
-    table.text() += kTableHead;
+    table.text() += table_head(*plan_.path);
     for (std::int64_t i = 0; i < places_.total(); ++i) {
       GRAVURE_TRY(const AxisPlaces places, places_.at(i));
       GRAVURE_TRY(const double along, places_.along_mm(i));
       table.text() += fmt::format("{:.9f}", static_cast<double>(i) * period_s_);
-      for (const double place : places) {
-        table.text() += fmt::format(",{:.9f}", rounded(place, 9));
+      for (std::size_t axis = 0; axis < plan_.path->axes.size(); ++axis) {
+        table.text() += fmt::format(",{:.9f}", rounded(places[axis], 9));
       }
       table.text() += fmt::format(",{:.9f}\n", along);
       if (!table.flush(false)) {
@@ -180,7 +196,7 @@ class Exporter {
   Result<void> check_axes() {
     std::ifstream table(folder_.file("axes.csv"));
     std::string line;
-    if (!std::getline(table, line) || line + "\n" != kTableHead) {
+    if (!std::getline(table, line) || line + "\n" != table_head(*plan_.path)) {
       return differs("axes.csv", 0);
     }
     for (std::int64_t i = 0; i < places_.total(); ++i) {
@@ -194,8 +210,10 @@ class Exporter {
 
  private:
   /// Does a line of the table have these places behind its time?
-  static bool says(std::string_view line, const AxisPlaces& places) {
-    std::array<double, kPathAxes.size() + 2> row{};
+  bool says(std::string_view line, const AxisPlaces& places) const {
+    const std::size_t axes = plan_.path->axes.size();
+    std::array<double, kPathAxes.size() + 2> numbers{};
+    const std::span<double> row = std::span(numbers).first(axes + 2);
     for (double& value : row) {
       const auto [end, failed] = std::from_chars(line.data(), line.data() + line.size(), value);
       const auto taken = static_cast<std::size_t>(end - line.data());
@@ -205,7 +223,7 @@ class Exporter {
       }
       line.remove_prefix(last ? taken : taken + 1);
     }
-    for (std::size_t axis = 0; axis < places.size(); ++axis) {
+    for (std::size_t axis = 0; axis < axes; ++axis) {
       if (!(std::abs(row[axis + 1] - places[axis]) <= kWritten)) {
         return false;
       }
@@ -230,8 +248,10 @@ class Exporter {
     GRAVURE_TRY(const AxisPlaces before, places_.at(end - 1));
     GRAVURE_TRY(const AxisPlaces after, places_.at(end + 1));
     block.place = stages_of(places);
-    for (std::size_t i = 0; i < nc::kStages; ++i) {
-      block.speed[i] = end == places_.total() - 1 ? 0 : (after[i] - before[i]) / (2 * period_s_);
+    const nc::StagePlace from = stages_of(before);
+    const nc::StagePlace to = stages_of(after);
+    for (std::size_t i = 0; i < stages_; ++i) {
+      block.speed[i] = end == places_.total() - 1 ? 0 : (to[i] - from[i]) / (2 * period_s_);
     }
     return block;
   }
@@ -247,7 +267,7 @@ class Exporter {
   Result<Deviation> deviation(const nc::StageProgram& program, bool cubic) {
     const char* file = cubic ? "stages.pvt" : "stages.ngc";
     Deviation deviation;
-    if (static_cast<std::int64_t>(program.blocks.size()) != blocks()) {
+    if (program.stages != stages_ || static_cast<std::int64_t>(program.blocks.size()) != blocks()) {
       return differs(file, static_cast<std::int64_t>(program.blocks.size()));
     }
     nc::StagePlace from = program.start;
@@ -256,7 +276,7 @@ class Exporter {
       const nc::StageBlock& read = program.blocks[static_cast<std::size_t>(number)];
       GRAVURE_TRY(const nc::StageBlock intended, block(number));
       const bool on_time = std::abs(read.duration_s - intended.duration_s) <= 1e-9 * intended.duration_s + 1e-12;
-      for (std::size_t i = 0; i < nc::kStages; ++i) {
+      for (std::size_t i = 0; i < stages_; ++i) {
         if (!on_time || !(std::abs(read.place[i] - intended.place[i]) <= kWritten) ||
             (cubic && !(std::abs(read.speed[i] - intended.speed[i]) <= kWritten))) {
           return differs(file, number);
@@ -267,8 +287,9 @@ class Exporter {
         const double share = static_cast<double>(i) / static_cast<double>(periods);
         const nc::StagePlace moved =
             cubic ? nc::cubic_between(from, from_speed, read, share) : nc::straight_between(from, read, share);
-        GRAVURE_TRY(const AxisPlaces wanted, places_.at(number * step_ + i));
-        for (std::size_t axis = 0; axis < nc::kStages; ++axis) {
+        GRAVURE_TRY(const AxisPlaces places, places_.at(number * step_ + i));
+        const nc::StagePlace wanted = stages_of(places);
+        for (std::size_t axis = 0; axis < stages_; ++axis) {
           deviation.most[axis] = std::max(deviation.most[axis], std::abs(moved[axis] - wanted[axis]));
         }
       }
@@ -282,20 +303,25 @@ class Exporter {
   Places places_;
   std::int64_t step_;
   double period_s_;
+  std::size_t stages_;  ///< of NC programs
   const FolderOutput& folder_;
 };
 
-Json json_of(const Deviation& deviation) {
+Json json_of(const Deviation& deviation, const PathPlan& path) {
   Json json = Json::object();
-  for (std::size_t axis = 0; axis < nc::kStages; ++axis) {
-    json[std::string(kPathAxes[axis]) + (axis_turns(axis) ? "_deg" : "_mm")] = deviation.most[axis];
+  for (std::size_t i = 0; i < nc_axes(path).size(); ++i) {
+    const std::size_t axis = nc_axes(path)[i];
+    json[std::string(kPathAxes[axis]) + (axis_turns(axis) ? "_deg" : "_mm")] = deviation.most[i];
   }
   return json;
 }
 
-std::string text_of(const char* name, const Deviation& deviation) {
-  return fmt::format("{:<12}off at most X {:.3g} Y {:.3g} Z {:.3g} mm, A {:.3g} C {:.3g} deg between blocks\n", name,
-                     deviation.most[0], deviation.most[1], deviation.most[2], deviation.most[3], deviation.most[4]);
+std::string text_of(const char* name, const Deviation& deviation, const PathPlan& path) {
+  const std::string focus =
+      path.has_focus_axis() ? fmt::format(" {} {:.3g}", kPathAxes[kFocusAxis], deviation.most[nc::kStages]) : "";
+  return fmt::format("{:<12}off at most X {:.3g} Y {:.3g} Z {:.3g}{} mm, A {:.3g} C {:.3g} deg between blocks\n", name,
+                     deviation.most[0], deviation.most[1], deviation.most[2], focus, deviation.most[3],
+                     deviation.most[4]);
 }
 
 /// Refuses, before anything is written, what the disk has no room for; says what takes long.
@@ -356,13 +382,13 @@ Result<int> export_path(const std::string& path, const std::string& folder_path,
                 {"block_ms", block_ms},
                 {"set_points", set_points_of(plan)},
                 {"galvo_field_mm", field ? Json(*field) : Json(nullptr)},
-                {"g_code_off", json_of(straight)},
-                {"pvt_off", json_of(cubic)}});
+                {"g_code_off", json_of(straight, *plan.path)},
+                {"pvt_off", json_of(cubic, *plan.path)}});
     return kDone;
   }
   print(fmt::format("{}: {} blocks of {} ms, {} set-points; all read back and compared\n", folder_path,
                     exporter.blocks(), block_ms, set_points_of(plan)) +
-        text_of("stages.ngc", straight) + text_of("stages.pvt", cubic) +
+        text_of("stages.ngc", straight, *plan.path) + text_of("stages.pvt", cubic, *plan.path) +
         (field ? fmt::format("galvo.gxy2  20 bits over {} mm\n", *field)
                : "galvo.gxy2  not written: the plan gives U and V no field\n"));
   return kDone;

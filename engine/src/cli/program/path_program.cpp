@@ -19,7 +19,7 @@ Json figure_json(const PulseFigure& figure) {
 
 Json axes_json(const PathReport& report) {
   Json axes = Json::object();
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < report.axes.size(); ++axis) {
     const AxisUse& use = report.axes[axis];
     const std::string unit = axis_turns(axis) ? "deg" : "mm";
     axes[std::string(kPathAxes[axis])] = {{"least_" + unit, use.least},
@@ -71,7 +71,7 @@ std::string text_of(const PathReport& report) {
   row("galvo", report.displacement_mm, "mm");
   text += fmt::format("\n{:<6}{:>14}{:>14}{:>14}{:>16}{:>16}\n", "axis", "from", "to", "speed /s", "accel. /s^2",
                       "jerk /s^3");
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < report.axes.size(); ++axis) {
     const AxisUse& use = report.axes[axis];
     text += fmt::format("{:<2}{:<4}{:>14.6f}{:>14.6f}{:>14.6g}{:>16.6g}{:>16.6g}\n", kPathAxes[axis],
                         axis_turns(axis) ? "deg" : "mm", rounded(use.least, 6), rounded(use.most, 6), use.max_speed,
@@ -210,7 +210,8 @@ std::string path_text(const Plan& plan) {
       fmt::format("path      {} periods of {} slots, {} ticks = {:.3f} s; {} pulses {} um apart, {} wanted points\n",
                   plan.rotary.lines_per_revolution, plan.line.slots, plan.job.ticks, to_double(plan.job.duration_s),
                   path.pulses, to_decimal_string(plan.line.pixel_pitch_um), path.targets);
-  text += fmt::format("machine   X Y Z A C and galvo, signs of {}\n", path.machine);
+  text += fmt::format("machine   X Y Z A C{}, signs of {}\n",
+                      path.has_focus_axis() ? ", galvo and focus axis W" : " and galvo", path.machine);
   for (const auto& [name, value] : {std::pair("surface", path.surface), std::pair("texture", path.texture)}) {
     if (!value.empty()) {
       text += fmt::format("{:<10}{}\n", name, value);

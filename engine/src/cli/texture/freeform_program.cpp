@@ -24,9 +24,6 @@ Result<void> check_programmable(const FreeformJob& job) {
   if (!job.texture.pitch_um) {
     return Error{ErrorCode::bad_argument, "--pitch-um is missing: how far apart the pulses lie along the path"};
   }
-  if (job.split.focus_axis) {
-    return Error{ErrorCode::bad_argument, "--focus-axis: programs are made for seven axes"};
-  }
   if (!is_level(job.axes) && !job.texture.bitmap.empty()) {
     return Error{ErrorCode::bad_argument,
                  "--tilt-deg, [clamping] tilt_deg: a program of a picture is made of a workpiece that lies level, for "
@@ -47,7 +44,8 @@ PathAxisPlan axis_plan(std::size_t axis, const texture::AxisBounds& bounds) {
 
 PathPlan path_plan_of(const FreeformJob& job, const WantedTexture& wanted) {
   PathPlan path;
-  const texture::SevenLimits limits = seven_limits_of(job.motion);
+  const texture::AxesLimits limits = axes_limits_of(job);
+  path.axes.resize(limits.size());
   for (std::size_t axis = 0; axis < limits.size(); ++axis) {
     path.axes[axis] = axis_plan(axis, limits[axis]);
   }
@@ -55,6 +53,11 @@ PathPlan path_plan_of(const FreeformJob& job, const WantedTexture& wanted) {
   for (const std::size_t axis : {5U, 6U}) {
     path.axes[axis].least = -reach;
     path.axes[axis].most = reach;
+  }
+  if (job.split.focus_mm) {
+    const Rational focus = exact_decimal(*job.split.focus_mm);
+    path.axes[kFocusAxis].least = -focus;
+    path.axes[kFocusAxis].most = focus;
   }
   path.max_focus_offset_um = exact_decimal(job.split.fod_um);
   path.max_incidence_deg = exact_decimal(job.split.bia_deg);
@@ -164,8 +167,10 @@ Result<CompiledPath> compile_texture(const FreeformJob& job, const PlannedTextur
     header.job_path = relative_to(job.job.path, fs::path(output).parent_path());
     GRAVURE_TRY(header.sources, sources_of(job, planned.wanted));
   }
+  GrvOptions stored = grv;
+  stored.focus_axis = header.plan.path->has_focus_axis();
   GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
-              create_grv(output, 1, header.plan.rotary.lines_per_revolution, header.line_bytes(), grv));
+              create_grv(output, 1, header.plan.rotary.lines_per_revolution, header.line_bytes(), stored));
   ProgressBar bar("compile");
   return compile_path(std::move(header), *planned.outcome.seven.proven.path.motion, planned.wanted.pulses,
                       planned.wanted.targets, *sink, &cancel_token(), &bar);

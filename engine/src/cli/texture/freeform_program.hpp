@@ -19,8 +19,8 @@ struct WantedTexture {
   std::optional<texture::PictureGrid> picture;
 };
 
-/// Of points that lie on the surface, as it is clamped. bad_argument for what programs are not made of: a focus axis,
-/// a tilted picture, no pitch.
+/// Of points that lie on the surface, as it is clamped. bad_argument for what programs are not made of: a tilted
+/// picture, no pitch.
 Result<WantedTexture> wanted_of(const FreeformJob& job, const texture::TexturePath& path,
                                 std::span<const texture::SurfacePoint> on_surface,
                                 std::span<const texture::SurfacePoint> lying);

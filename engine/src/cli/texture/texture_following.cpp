@@ -22,8 +22,8 @@ std::string error_text(const texture::FollowingError& error, const char* unit, d
                      static_cast<double>(error.instant) * servo_s, error.rms * per_unit);
 }
 
-texture::SevenServos servos_of(const MotionSettings& settings) {
-  texture::SevenServos servos = texture::assumed_servos();
+texture::AxesServos servos_of(const MotionSettings& settings, bool focus_axis) {
+  texture::AxesServos servos = texture::assumed_servos(focus_axis);
   for (std::size_t axis = 0; axis < servos.size(); ++axis) {
     const GivenServo& given = settings.servos[axis];
     servos[axis] = {given.natural_hz.value_or(servos[axis].natural_hz), given.damping.value_or(servos[axis].damping)};
@@ -46,7 +46,7 @@ Result<AxisSetting> axis_setting(const std::string& option, const std::string& t
   const auto axis = std::find(kPathAxes.begin(), kPathAxes.end(), text.substr(0, text.find('=')));
   if (text.find('=') == std::string::npos || axis == kPathAxes.end()) {
     return Error{ErrorCode::bad_argument,
-                 fmt::format("{} {}: must be {} with X, Y, Z, A, C, U or V", option, text, form)};
+                 fmt::format("{} {}: must be {} with X, Y, Z, A, C, U, V or W", option, text, form)};
   }
   AxisSetting setting;
   setting.axis = static_cast<std::size_t>(axis - kPathAxes.begin());
@@ -70,14 +70,14 @@ Result<void> set_servos(const std::vector<std::string>& servos, MotionSettings& 
     GRAVURE_CHECK(refuse_twice("--servo", setting.axis, given));
     motion.servos[setting.axis] = {setting.numbers[0], setting.numbers[1]};
   }
-  return texture::check_servos(servos_of(motion));
+  return texture::check_servos(servos_of(motion, true));
 }
 
 Result<Following> predict(const MotionSettings& settings, const PathMotion& motion,
                           const texture::PathMachine& machine) {
   Following following;
-  following.servos = servos_of(settings);
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  following.servos = servos_of(settings, texture::has_focus_axis(machine.limits));
+  for (std::size_t axis = 0; axis < following.servos.size(); ++axis) {
     following.stated[axis] = settings.servos[axis].natural_hz && settings.servos[axis].damping;
   }
   GRAVURE_TRY(const texture::RotaryTable table, texture::rotary_table(machine.machine));
@@ -88,7 +88,7 @@ Result<Following> predict(const MotionSettings& settings, const PathMotion& moti
 
 Json following_json(const Following& following, double servo_s) {
   Json axes = Json::array();
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < following.servos.size(); ++axis) {
     Json one{{"axis", kPathAxes[axis]},
              {"natural_hz", following.servos[axis].natural_hz},
              {"damping", following.servos[axis].damping},
@@ -104,7 +104,7 @@ Json following_json(const Following& following, double servo_s) {
 
 std::string following_text(const Following& following, double servo_s) {
   std::string text;
-  for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < following.servos.size(); ++axis) {
     const texture::FollowingError& error = following.errors.axes[axis];
     text += fmt::format("following     {} {} ({:.6g} Hz, damping {:.6g}{})\n", kPathAxes[axis],
                         axis_turns(axis) ? error_text(error, "deg", kDegreesPerRad, servo_s)

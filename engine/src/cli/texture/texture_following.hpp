@@ -27,8 +27,8 @@ Result<void> set_servos(const std::vector<std::string>& servos, MotionSettings& 
 
 /// What the loops make of a motion; those that are not wholly stated are assumed.
 struct Following {
-  texture::SevenServos servos;
-  std::array<bool, kPathAxes.size()> stated{};
+  texture::AxesServos servos;
+  std::array<bool, kPathAxes.size()> stated{};  ///< of `servos`
   texture::FollowingErrors errors;
 };
 /// Errors as texture::check_servos() and texture::predict_following().

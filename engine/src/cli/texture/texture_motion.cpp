@@ -16,11 +16,12 @@ namespace {
 constexpr double kPercent = 100;
 
 Result<texture::PathMachine> path_machine_of(const FreeformJob& job) {
+  GRAVURE_CHECK(check_focus_axis(job));
   texture::PathMachine machine;
   machine.machine = machine_of(job.axes);
   machine.branch = branch_of(job.axes);
   machine.clamping = clamping_of(job.axes);
-  machine.limits = seven_limits_of(job.motion);
+  machine.limits = axes_limits_of(job);
   GRAVURE_CHECK(texture::check_limits(machine.limits));
   const bool points = job.motion.stops.empty() ? job.texture.hilbert_order != 0 : job.motion.stops == "points";
   machine.stops = points ? texture::Stops::points : texture::Stops::corners;
@@ -129,10 +130,28 @@ double five_digits(double value) {
   return std::round(value * kDigits) / kDigits + 0.0;
 }
 
-texture::SevenLimits seven_limits_of(const MotionSettings& motion) {
-  texture::SevenLimits limits = texture::published_limits();
+Result<void> check_focus_axis(const FreeformJob& job) {
+  const GivenBounds& limits = job.motion.limits[kFocusAxis];
+  const GivenServo& servo = job.motion.servos[kFocusAxis];
+  if (job.split.focus_axis && !(limits.speed && limits.acceleration && limits.jerk)) {
+    return Error{ErrorCode::bad_argument,
+                 "axis W: speed, acceleration and jerk of the focus axis are published nowhere: give all three with "
+                 "--limit W=SPEED,ACCELERATION,JERK (mm per s, s^2, s^3)"};
+  }
+  if (!job.split.focus_axis &&
+      (limits.speed || limits.acceleration || limits.jerk || servo.natural_hz || servo.damping || job.split.focus_mm)) {
+    return Error{ErrorCode::bad_argument, "axis W: limits, servo and reach have a meaning only with --focus-axis"};
+  }
+  return {};
+}
+
+texture::AxesLimits axes_limits_of(const FreeformJob& job) {
+  texture::AxesLimits limits = texture::published_limits();
+  if (job.split.focus_axis) {
+    limits.emplace_back();
+  }
   for (std::size_t axis = 0; axis < limits.size(); ++axis) {
-    const GivenBounds& given = motion.limits[axis];
+    const GivenBounds& given = job.motion.limits[axis];
     texture::AxisBounds& bounds = limits[axis];
     bounds = {given.speed.value_or(bounds.speed), given.acceleration.value_or(bounds.acceleration),
               given.jerk.value_or(bounds.jerk)};

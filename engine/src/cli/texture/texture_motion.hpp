@@ -35,8 +35,11 @@ Result<T> placed(const FreeformJob& job, std::string_view key, Result<T> result)
   return result ? std::move(result) : Result<T>(placed_error(job, key, result.error()));
 }
 
-/// Those of [A] table 1 where none are given.
-texture::SevenLimits seven_limits_of(const MotionSettings& motion);
+/// Those of [A] table 1 where none are given; with a focus axis W's, which has none there: check_focus_axis().
+texture::AxesLimits axes_limits_of(const FreeformJob& job);
+
+/// bad_argument for a focus axis whose limits are not all stated, and for what is said of one that is not there.
+Result<void> check_focus_axis(const FreeformJob& job);
 
 /// What planning may take where --memory is left out.
 inline constexpr std::int64_t kTextureMemory_mib = 1024;

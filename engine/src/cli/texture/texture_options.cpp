@@ -63,7 +63,8 @@ void add_split_options(CLI::App& verb, SplitSettings& options, const std::string
   verb.add_option("--split", options.method, "How the stages' path is made")
       ->check(one_of(kSplitMethods))
       ->capture_default_str();
-  verb.add_flag("--focus-axis", options.focus_axis, "An axis W takes up the focus offset: no limit for it");
+  verb.add_flag("--focus-axis", options.focus_axis, "An axis W takes up the focus offset, which has no limit then");
+  add_length(verb, "--focus-mm", options.focus_mm, 1e6, "What that axis reaches from its middle");
   add_length(verb, "--sigma-um", options.sigma_um, 1e9,
              "Sigma of the Gaussian along the path; left out: " + without_sigma);
   add_length(verb, "--cut", options.cut, 38, "Where the Gaussian ends, in sigma")->capture_default_str();
@@ -74,7 +75,8 @@ void add_split_options(CLI::App& verb, SplitSettings& options, const std::string
 }
 
 texture::DeviationLimits limits_of(const SplitSettings& options) {
-  return {options.focus_axis ? std::numeric_limits<double>::infinity() : options.fod_um / kUmPerMm,
+  return {options.focus_axis ? options.focus_mm.value_or(std::numeric_limits<double>::infinity())
+                             : options.fod_um / kUmPerMm,
           options.bia_deg / kDegreesPerRad, options.displacement_mm};
 }
 
@@ -221,7 +223,9 @@ std::string split_text(const texture::TexturePath& path, const texture::Split& s
   }
   text += fmt::format("focus offset  {:.3f} um at most, {:.3f} um rms ({})\n", most.max_focus_mm * kUmPerMm,
                       most.rms_focus_mm * kUmPerMm,
-                      options.focus_axis ? "taken up by W" : fmt::format("allowed {:.6g}", options.fod_um));
+                      !options.focus_axis ? fmt::format("allowed {:.6g}", options.fod_um)
+                      : options.focus_mm  ? fmt::format("taken up by W, which reaches {:.6g} mm", *options.focus_mm)
+                                          : "taken up by W");
   text += fmt::format("incidence     {:.5f} deg at most (allowed {:.6g})\n", most.max_incidence_rad * kDegreesPerRad,
                       options.bia_deg);
   text += fmt::format("galvo         {:.6f} mm at most (allowed {:.6g})\n", most.max_displacement_mm,

@@ -29,7 +29,8 @@ Result<std::optional<TextOutput>> stage_trajectory(const TexturePlanArguments& o
     return std::optional<TextOutput>();
   }
   GRAVURE_TRY(TextOutput output, TextOutput::create(options.trajectory));
-  output.text() += "t_s,X,Y,Z,A,C,U,V,along_mm\n";
+  output.text() += options.job.split.focus_axis ? "t_s,X,Y,Z,A,C,U,V,W,along_mm\n" : "t_s,X,Y,Z,A,C,U,V,along_mm\n";
+  const std::size_t axes = options.job.split.focus_axis ? kPathAxes.size() : kFocusAxis;
   std::vector<PathInstant> block;
   const std::int64_t instants = motion.instants();
   for (std::int64_t first = 0; first < instants && !cancel_token().cancelled(); first += kBlock) {
@@ -39,7 +40,7 @@ Result<std::optional<TextOutput>> stage_trajectory(const TexturePlanArguments& o
       const std::int64_t at = first + static_cast<std::int64_t>(k);
       if (at % options.every == 0 || at + 1 == instants) {
         output.text() += fmt::format("{:.7f}", static_cast<double>(at) * options.job.motion.servo_us / kUsPerS);
-        for (std::size_t axis = 0; axis < kPathAxes.size(); ++axis) {
+        for (std::size_t axis = 0; axis < axes; ++axis) {
           const int decimals = axis_turns(axis) ? 12 : 9;
           output.text() += fmt::format(",{:.{}f}", rounded(block[k].axes[axis], decimals), decimals);
         }

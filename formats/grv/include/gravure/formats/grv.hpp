@@ -21,6 +21,7 @@ struct GrvOptions {
   /// Target size of a chunk; a longer line is a chunk by itself. What is done to a chunk stays in the cache of one
   /// core.
   std::int64_t chunk_bytes = std::int64_t{1} << 18;
+  bool focus_axis = false;  ///< the program follows a path and its set-points have W: known before its plan is
 };
 
 /// Starts a program file of `layers` layers with `lines_per_layer` lines of `line_bytes` bytes. The same chunks put in
@@ -37,7 +38,7 @@ Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64
 /// Opens a program file and verifies everything in it but the bits, which decode() verifies chunk by chunk: any chunk
 /// can be had without reading the others. Fails with io where the file cannot be read, bad_file where it is no program,
 /// cut off, lengthened or altered (naming the first missing chunk where it is cut), version_mismatch for a format
-/// version other than ProgramHeader::kFormatVersion.
+/// version above kNewestFormatVersion.
 Result<std::unique_ptr<LineSource>> open_grv(const std::string& path);
 
 /// A program, or a shard of one (ProgramHeader::shard), and how its bits are stored.

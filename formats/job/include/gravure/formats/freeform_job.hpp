@@ -46,7 +46,8 @@ inline constexpr std::int64_t kMostHilbertOrder = 10;
 /// How the path is split between stages and galvo, and what both are allowed.
 struct SplitSettings {
   std::string method = "gaussian";
-  bool focus_axis = false;  ///< an axis takes up the focus offset: no limit for it; never so in a job
+  bool focus_axis = false;         ///< an axis takes up the focus offset: no limit for it but focus_mm
+  std::optional<double> focus_mm;  ///< what that axis reaches from its middle
   std::optional<double> sigma_um;
   std::string rule = "time";  ///< for sigma where it is not given
   double time_share_percent = 0.5;
@@ -70,7 +71,7 @@ struct AxesSettings {
 inline constexpr std::array<std::string_view, 2> kBranches = {"positive", "negative"};
 inline constexpr std::array<std::string_view, 2> kSigns = {"texturing", "post-processor"};
 
-/// Limits of an axis, mm or rad a s, s^2 and s^3; those left out are of [A] table 1.
+/// Limits of an axis, mm or rad a s, s^2 and s^3; those left out are of [A] table 1, which has none for W.
 struct GivenBounds {
   std::optional<double> speed;
   std::optional<double> acceleration;
