@@ -49,7 +49,7 @@ Result<TimedSplit> time_split(Split split, const TexturePath& path, const PathMa
 
 Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surface, const TexturePath& path,
                                  const DeviationLimits& limits, const PathMachine& machine, double share,
-                                 const CancelToken& cancel) {
+                                 const CancelToken& cancel, Progress* progress) {
   if (!(share >= 0) || !std::isfinite(share)) {
     return Error{ErrorCode::out_of_range, fmt::format("share of the time {}: must be 0 or more", share)};
   }
@@ -67,6 +67,15 @@ Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surfac
   const double published_mm = best.split.sigma_mm;
   double good_mm = published_mm;
   double bad_mm = 0;
+  constexpr int kBetween = 2;
+  const auto most_looks = 1 + kBetween + std::max<std::int64_t>(0, std::ilogb(published_mm / path.step_mm));
+  std::int64_t looks = 0;
+  const auto looked = [&] {
+    if (progress != nullptr) {
+      progress->update(++looks, most_looks);
+    }
+  };
+  looked();
   const auto look = [&](double sigma_mm) -> Result<bool> {
     GRAVURE_TRY(Split split, split_path(splitter, surface, path, limits, sigma_mm, cancel));
     if (!violations(split.most, limits).empty()) {
@@ -84,16 +93,17 @@ Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surfac
   };
   while (good_mm / 2 >= path.step_mm) {
     GRAVURE_TRY(const bool good, look(good_mm / 2));
+    looked();
     if (!good) {
       bad_mm = good_mm / 2;
       break;
     }
     good_mm /= 2;
   }
-  constexpr int kBetween = 2;
   for (int k = 0; k < kBetween && bad_mm > 0; ++k) {
     const double middle_mm = std::sqrt(good_mm * bad_mm);
     GRAVURE_TRY(const bool good, look(middle_mm));
+    looked();
     (good ? good_mm : bad_mm) = middle_mm;
   }
   best.fastest_s = fastest_s;

@@ -241,7 +241,7 @@ const Wrong kWrongs[] = {
     {"ReachOfNoFocusAxis", "fod_um          = 100 ", "focus_mm = 2 ", kNotSo, "focus_mm",
      "[limits] focus_mm = 2: has a meaning only with [split] focus_axis = true; take it out"},
     {"OriginOfTwo", "[motion]", "[clamping]\norigin_mm = [1, 2]\n[motion]", kNotSo, "[1, 2]",
-     "[clamping] origin_mm = [1, 2]: must be [x, y, z], three numbers from -10_000 to 10_000 mm"},
+     "[clamping] origin_mm = [1, 2]: must be [x, y, z], three numbers from -1_000 to 1_000 mm"},
     {"TiltBeyondATurn", "[motion]", "[clamping]\ntilt_deg = [0, 190]\n[motion]", kOutside, "190",
      "[clamping] tilt_deg = [0, 190]: must be [first, second], two numbers from -180 to 180 deg"},
     {"NoClock", "clock_multiplier = 2 ", "", kNotSo, "[fpga]",

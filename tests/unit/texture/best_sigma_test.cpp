@@ -13,6 +13,15 @@ PathMachine machine_of_a() {
           Stops::points, 50e-6};
 }
 
+class Told final : public Progress {
+ public:
+  void update(std::int64_t done, std::int64_t total) override {
+    EXPECT_EQ(done, ++looks);
+    EXPECT_LE(done, total);
+  }
+  std::int64_t looks = 0;
+};
+
 /// The published case: at least four times less focus offset for less than 1 % of the time.
 TEST(SplitByTime, CutsTheFocusOffsetForHardlyAnyTime) {
   const auto surface = test::published_surface();
@@ -21,8 +30,10 @@ TEST(SplitByTime, CutsTheFocusOffsetForHardlyAnyTime) {
   const auto wide = split_by_published_rule(*splitter, *surface, path, {}, {});
   ASSERT_TRUE(wide);
   const auto published = time_split(wide.value(), path, machine_of_a(), {});
-  const auto best = split_by_time(*splitter, *surface, path, {}, machine_of_a(), 0.005, {});
+  Told told;
+  const auto best = split_by_time(*splitter, *surface, path, {}, machine_of_a(), 0.005, {}, &told);
   ASSERT_TRUE(published && best);
+  EXPECT_GE(told.looks, best.value().tries);
   EXPECT_LE(best.value().timed.time_s, 1.005 * best.value().fastest_s);
   EXPECT_LT(best.value().timed.time_s, 1.01 * published.value().timed.time_s);
   EXPECT_LT(4 * best.value().split.most.max_focus_mm, published.value().split.most.max_focus_mm);

@@ -47,9 +47,10 @@ Result<TimedSplit> time_split(Split split, const TexturePath& path, const PathMa
 /// The better rule: the smallest sigma whose motion takes at most `share` longer than the fastest, because below some
 /// sigma the galvo sets the time and a wider one only costs focus and incidence. Looks from the sigma of the published
 /// rule down by halves until the share is exceeded, then twice between. The limits hold as in that rule; a splitter
-/// that keeps to them itself is run once.
+/// that keeps to them itself is run once. `progress` is told of every sigma that was looked at, and how many there may
+/// be.
 Result<TimedSplit> split_by_time(const Splitter& splitter, const Surface& surface, const TexturePath& path,
                                  const DeviationLimits& limits, const PathMachine& machine, double share,
-                                 const CancelToken& cancel);
+                                 const CancelToken& cancel, Progress* progress = nullptr);
 
 }  // namespace gravure::texture

@@ -43,8 +43,9 @@ Result<texture::Split> plain_split(const SplitSettings& settings, const texture:
 Result<texture::TimedSplit> timed_split(const SplitSettings& settings, const texture::Surface& surface,
                                         const texture::TexturePath& path, const texture::PathMachine& machine) {
   if (!settings.sigma_um && settings.rule == "time") {
+    ProgressBar bar("sigma", "tries");
     return texture::split_by_time(*splitter_of(settings), surface, path, limits_of(settings), machine,
-                                  settings.time_share_percent / kPercent, cancel_token());
+                                  settings.time_share_percent / kPercent, cancel_token(), &bar);
   }
   GRAVURE_TRY(texture::Split split, plain_split(settings, surface, path));
   return texture::time_split(std::move(split), path, machine, cancel_token());
@@ -83,6 +84,15 @@ Result<TimedTexture> surface_and_path(const FreeformJob& job, const Command& com
 const char* limit_unit(const texture::LimitUse& use) {
   constexpr const char* kUnits[2][3] = {{"mm/s", "mm/s^2", "mm/s^3"}, {"rad/s", "rad/s^2", "rad/s^3"}};
   return kUnits[axis_turns(use.axis) ? 1 : 0][static_cast<std::size_t>(use.kind)];
+}
+
+/// Degrees, as job keys and `verify` have them, with the rad that `--limit` takes behind.
+std::string limit_shown(const texture::LimitUse& use, double value) {
+  constexpr const char* kPer[] = {"s", "s^2", "s^3"};
+  const std::string shown = fmt::format("{:.6g} {}", value, limit_unit(use));
+  return axis_turns(use.axis) ? fmt::format("{:.6g} deg/{} = {}", value * kDegreesPerRad,
+                                            kPer[static_cast<std::size_t>(use.kind)], shown)
+                              : shown;
 }
 
 /// Stated, or that of published_limits().
@@ -197,8 +207,9 @@ Result<TimedTexture> untimed_texture(const FreeformJob& job, const Command& comm
 std::vector<std::string> violations_of(const FreeformJob& job, const TimedTexture& texture) {
   std::vector<std::string> found = texture::violations(texture.timed.split.most, limits_of(job.split));
   for (const texture::LimitUse& use : texture::broken(texture.proven.uses)) {
-    found.push_back(fmt::format("axis {}: {} {:.6g}, allowed {:.6g} {}, at {:.4f} s", kPathAxes[use.axis],
-                                texture::limit_name(use.kind), use.most, use.allowed, limit_unit(use),
+    found.push_back(fmt::format("axis {}: {} {}, allowed {}, at {:.4f} s", kPathAxes[use.axis],
+                                texture::limit_name(use.kind), limit_shown(use, use.most),
+                                limit_shown(use, use.allowed),
                                 static_cast<double>(use.instant) * texture.machine.servo_s));
   }
   return found;
@@ -244,9 +255,9 @@ std::string seven_text(const TimedTexture& texture) {
 std::string limits_text(const MotionSettings& motion, const TimedTexture& texture) {
   std::string text;
   for (const texture::LimitUse& use : texture.proven.uses) {
-    text += fmt::format("limit         {} {:<12} {:6.2f} % at {:.4f} s of {:.6g} {} ({})\n", kPathAxes[use.axis],
+    text += fmt::format("limit         {} {:<12} {:6.2f} % at {:.4f} s of {} ({})\n", kPathAxes[use.axis],
                         texture::limit_name(use.kind), use.share() * kPercent,
-                        static_cast<double>(use.instant) * texture.machine.servo_s, use.allowed, limit_unit(use),
+                        static_cast<double>(use.instant) * texture.machine.servo_s, limit_shown(use, use.allowed),
                         limit_source(motion, use));
   }
   return text;

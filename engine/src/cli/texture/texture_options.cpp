@@ -15,7 +15,8 @@
 namespace gravure::cli {
 namespace {
 
-constexpr double kMostPlace_mm = 1e4;  ///< of a workpiece, as in jobs
+constexpr double kMostPlace_mm = 1e4;   ///< of a workpiece, as in jobs
+constexpr double kMostOrigin_mm = 1e3;  ///< further off the stages would cross a hall to keep up with A and C
 
 template <std::size_t count>
 CLI::Validator one_of(const std::array<std::string_view, count>& words) {
@@ -97,7 +98,7 @@ void add_axes_options(CLI::App& verb, AxesSettings& options) {
       ->capture_default_str();
   verb.add_option("--origin-mm", options.origin_mm, "Where A and C meet, in the workpiece: x y z")
       ->expected(3)
-      ->check(number_from(-kMostPlace_mm, kMostPlace_mm));
+      ->check(number_from(-kMostOrigin_mm, kMostOrigin_mm));
   verb.add_option("--tilt-deg", options.tilt_deg, "Clamping: turned about x, then about y, by so much")
       ->expected(2)
       ->check(number_from(-180, 180));
