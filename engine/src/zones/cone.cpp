@@ -12,12 +12,15 @@ namespace {
 /// Angles that differ by less are equal: rounding of a cross product.
 constexpr double kEqual = 1e-14;
 
-double farthest_of(const Vector3& axis, std::span<const Vector3> directions) noexcept {
-  double most = 0;
-  for (const Vector3& direction : directions) {
-    most = std::max(most, angle_between(axis, direction));
-  }
-  return most;
+/// Squared chords that differ by less may be of angles in another order, by rounding.
+constexpr double kSameChord = 1 - 1e-9;
+
+/// The direction farthest from an axis, by the chord between them: it grows as the angle does, and costs no arc
+/// tangent.
+const Vector3& farthest_of(const Vector3& axis, std::span<const Vector3> directions) noexcept {
+  return *std::max_element(directions.begin(), directions.end(), [&axis](const Vector3& a, const Vector3& b) {
+    return (a - axis).squaredNorm() < (b - axis).squaredNorm();
+  });
 }
 
 /// The axis that is equally far from three directions, on their side.
@@ -35,7 +38,7 @@ std::optional<Vector3> axis_of_three(const Vector3& a, const Vector3& b, const V
 Cone small_cone(std::span<const Vector3> of, std::vector<Vector3>& basis) {
   Cone best{of[0], 4};
   const auto offer = [&](const std::optional<Vector3>& axis, std::vector<Vector3> standing_on) {
-    const double angle = axis && axis->allFinite() ? farthest_of(*axis, of) : 4;
+    const double angle = axis && axis->allFinite() ? largest_angle_from(*axis, of) : 4;
     if (angle < best.half_angle_rad - kEqual) {
       best = {*axis, angle};
       basis = std::move(standing_on);
@@ -74,32 +77,50 @@ Result<Cone> enclosing_cone(std::span<const Vector3> directions) {
   Cone cone{directions[0], 0};
   constexpr int kMostRounds = 1000;
   for (int round = 0; round < kMostRounds; ++round) {
-    const auto farthest = std::max_element(directions.begin(), directions.end(), [&](const auto& a, const auto& b) {
-      return angle_between(cone.axis, a) < angle_between(cone.axis, b);
-    });
-    const double angle = angle_between(cone.axis, *farthest);
+    const Vector3& farthest = farthest_of(cone.axis, directions);
+    const double angle = angle_between(cone.axis, farthest);
     if (angle <= cone.half_angle_rad + kEqual) {
       break;
     }
     std::vector<Vector3> four = basis;
-    four.push_back(*farthest);
+    four.push_back(farthest);
     const Cone next = small_cone(four, basis);
     if (!(next.half_angle_rad > cone.half_angle_rad)) {
       break;
     }
     cone = next;
   }
-  cone.half_angle_rad = farthest_of(cone.axis, directions);
+  cone.half_angle_rad = largest_angle_from(cone.axis, directions);
   if (!(cone.half_angle_rad < std::numbers::pi / 2)) {
     return Error{ErrorCode::out_of_range, "no cone below 90 degrees holds all directions: they point to all sides"};
   }
   return cone;
 }
 
+double largest_angle_from(const Vector3& axis, std::span<const Vector3> directions) noexcept {
+  double longest = 0;
+  for (const Vector3& direction : directions) {
+    longest = std::max(longest, (direction - axis).squaredNorm());
+  }
+  double most = 0;
+  for (const Vector3& direction : directions) {
+    if ((direction - axis).squaredNorm() >= longest * kSameChord) {
+      most = std::max(most, angle_between(axis, direction));
+    }
+  }
+  return most;
+}
+
 double largest_angle(std::span<const Vector3> directions) noexcept {
+  double longest = 0;
   double most = 0;
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    most = std::max(most, farthest_of(directions[i], directions.subspan(i)));
+    const std::span<const Vector3> others = directions.subspan(i);
+    const double chord = (farthest_of(directions[i], others) - directions[i]).squaredNorm();
+    if (chord >= longest * kSameChord) {
+      most = std::max(most, largest_angle_from(directions[i], others));
+      longest = std::max(longest, chord);
+    }
   }
   return most;
 }

@@ -42,8 +42,8 @@ struct Candidates {
   std::vector<Vector3> axes;
   bool is_complete = true;  ///< every set that any direction has is part of one of these
 
-  void keep_maximal() {
-    const std::vector<std::size_t> kept = maximal_sets(sets);
+  void keep_maximal(const ZoneWatch& watch) {
+    const std::vector<std::size_t> kept = maximal_sets(sets, watch);
     Candidates rest;
     for (const std::size_t s : kept) {
       rest.sets.push_back(sets[s]);
@@ -85,7 +85,7 @@ std::vector<Vector3> sample_directions(const std::vector<Piece>& pieces, bool& i
 }
 
 /// Every largest set of pieces within the limit of one direction, whatever their place.
-Candidates candidates_by_direction(const std::vector<Piece>& pieces, double limit) {
+Candidates candidates_by_direction(const std::vector<Piece>& pieces, double limit, const ZoneWatch& watch) {
   Candidates found;
   const std::vector<Vector3> sample = sample_directions(pieces, found.is_complete);
   std::map<Bits, Vector3> sets;
@@ -102,7 +102,8 @@ Candidates candidates_by_direction(const std::vector<Piece>& pieces, double limi
       sets.emplace(std::move(members), axis);
     }
   };
-  for (std::size_t i = 0; i < sample.size(); ++i) {
+  for (std::size_t i = 0; i < sample.size() && !watch.stopped(); ++i) {
+    watch.tell(ZonePart::candidates, i, sample.size());
     offer(sample[i]);
     for (std::size_t j = i + 1; j < sample.size(); ++j) {
       for (const Vector3& axis : axes_through(sample[i], sample[j], limit)) {
@@ -111,15 +112,15 @@ Candidates candidates_by_direction(const std::vector<Piece>& pieces, double limi
     }
   }
   if (!found.is_complete) {  // directions outside the sample need a set as well
-    for (const Piece& piece : pieces) {
-      offer(piece.direction);
+    for (std::size_t i = 0; i < pieces.size() && !watch.stopped(); ++i) {
+      offer(pieces[i].direction);
     }
   }
   for (auto& [members, axis] : sets) {
     found.sets.push_back(members);
     found.axes.push_back(axis);
   }
-  found.keep_maximal();
+  found.keep_maximal(watch);
   return found;
 }
 
@@ -167,11 +168,13 @@ void add_windows(const std::vector<Piece>& pieces, const std::vector<std::size_t
 }
 
 /// The same sets as far as they fit the field; each has a direction from which all its pieces can be marked.
-Candidates fit_field(const std::vector<Piece>& pieces, const Candidates& by_direction, const ZoneLimits& limits) {
+Candidates fit_field(const std::vector<Piece>& pieces, const Candidates& by_direction, const ZoneLimits& limits,
+                     const ZoneWatch& watch) {
   Candidates found;
   found.is_complete = by_direction.is_complete;
   const std::size_t edges = most_edges(pieces.size(), by_direction.sets.size());
-  for (std::size_t s = 0; s < by_direction.sets.size(); ++s) {
+  for (std::size_t s = 0; s < by_direction.sets.size() && !watch.stopped(); ++s) {
+    watch.tell(ZonePart::windows, s, by_direction.sets.size());
     const std::vector<std::size_t> members = by_direction.sets[s].members();
     const std::optional<Zone> whole = zone_of(pieces, members, limits, by_direction.axes[s]);
     if (whole) {
@@ -190,7 +193,7 @@ Candidates fit_field(const std::vector<Piece>& pieces, const Candidates& by_dire
       found.axes.push_back(pieces[i].direction);
     }
   }
-  found.keep_maximal();
+  found.keep_maximal(watch);
   return found;
 }
 
@@ -222,9 +225,10 @@ std::vector<Zone> assign(const std::vector<Piece>& pieces, const Candidates& can
 }
 
 /// Largest number of pieces found no two of which can share a zone.
-std::size_t packing_of(const std::vector<Piece>& pieces, const ZoneLimits& limits) {
+std::size_t packing_of(const std::vector<Piece>& pieces, const ZoneLimits& limits, const ZoneWatch& watch) {
   std::vector<Bits> neighbours(pieces.size(), Bits(pieces.size()));
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
+  for (std::size_t i = 0; i < pieces.size() && !watch.stopped(); ++i) {
+    watch.tell(ZonePart::bound, i, pieces.size());
     neighbours[i].set(i);
     for (std::size_t j = i + 1; j < pieces.size(); ++j) {
       if (!are_apart(pieces[i], pieces[j], limits)) {
@@ -236,14 +240,15 @@ std::size_t packing_of(const std::vector<Piece>& pieces, const ZoneLimits& limit
   return largest_packing(neighbours);
 }
 
-std::size_t bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits, const Candidates& by_direction) {
+std::size_t bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits, const Candidates& by_direction,
+                     const ZoneWatch& watch) {
   std::vector<Piece> sample;
   for (std::size_t i = 0; pieces.size() > kMostBounded && i < kMostBounded; ++i) {
     sample.push_back(pieces[i * pieces.size() / kMostBounded]);
   }
-  std::size_t bound = packing_of(sample.empty() ? pieces : sample, limits);
+  std::size_t bound = packing_of(sample.empty() ? pieces : sample, limits, watch);
   if (by_direction.is_complete) {
-    const SetCover cover = smallest_cover(by_direction.sets, pieces.size());
+    const SetCover cover = smallest_cover(by_direction.sets, pieces.size(), watch);
     bound = cover.is_proved ? std::max(bound, cover.chosen.size()) : bound;
   }
   return bound;
@@ -251,21 +256,33 @@ std::size_t bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits,
 
 }  // namespace
 
-std::size_t lower_bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits) {
-  return bound_of(pieces, limits, candidates_by_direction(pieces, limits.incidence_rad));
+Result<std::size_t> lower_bound_of(const std::vector<Piece>& pieces, const ZoneLimits& limits, const ZoneWatch& watch) {
+  const Candidates by_direction = candidates_by_direction(pieces, limits.incidence_rad, watch);
+  GRAVURE_CHECK(watch.go_on());
+  const std::size_t bound = bound_of(pieces, limits, by_direction, watch);
+  GRAVURE_CHECK(watch.go_on());
+  return bound;
 }
 
-Result<ZoneSet> cover_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits) {
+Result<ZoneSet> cover_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const ZoneWatch& watch) {
   GRAVURE_CHECK(check_limits(pieces, limits));
-  const Candidates by_direction = candidates_by_direction(pieces, limits.incidence_rad);
+  const Candidates by_direction = candidates_by_direction(pieces, limits.incidence_rad, watch);
+  GRAVURE_CHECK(watch.go_on());
   ZoneSet set;
-  set.lower_bound = bound_of(pieces, limits, by_direction);
-  const Candidates candidates = fit_field(pieces, by_direction, limits);
-  const SetCover cover = smallest_cover(candidates.sets, pieces.size());
+  set.lower_bound = bound_of(pieces, limits, by_direction, watch);
+  GRAVURE_CHECK(watch.go_on());
+  const Candidates candidates = fit_field(pieces, by_direction, limits, watch);
+  GRAVURE_CHECK(watch.go_on());
+  watch.tell(ZonePart::cover, 0, 1);
+  const SetCover cover = smallest_cover(candidates.sets, pieces.size(), watch);
+  GRAVURE_CHECK(watch.go_on());
   set.zones = assign(pieces, candidates, cover.chosen, limits);
-  take_k_means(pieces, limits, set);
-  refine_zones(pieces, limits, set.zones);
+  take_k_means(pieces, limits, watch, set);
+  GRAVURE_CHECK(watch.go_on());
+  refine_zones(pieces, limits, watch, set.zones);
+  GRAVURE_CHECK(watch.go_on());
   sort_zones(set.zones);
+  measure_zones(pieces, set.zones);
   return set;
 }
 

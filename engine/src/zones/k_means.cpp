@@ -112,6 +112,10 @@ double with_centre(const Data& data, std::size_t point, const std::vector<double
   return sum;
 }
 
+bool is_stopped(const KMeansRequest& request) {
+  return request.cancel != nullptr && request.cancel->cancelled();
+}
+
 /// k-means++: each centre a point, drawn by its squared distance from those before; of 2 + ln k draws the one that
 /// leaves least is taken. Fewer centres where no other place is left.
 std::vector<double> first_centres(const Data& data, const KMeansRequest& request, std::uint64_t start) {
@@ -124,7 +128,7 @@ std::vector<double> first_centres(const Data& data, const KMeansRequest& request
   double sum = with_centre(data, first, squared, squared);
   std::vector<double> then(data.count);
   std::vector<double> best(data.count);
-  for (std::size_t c = 1; c < request.clusters && sum > 0; ++c) {
+  for (std::size_t c = 1; c < request.clusters && sum > 0 && !is_stopped(request); ++c) {
     double least = std::numeric_limits<double>::infinity();
     std::size_t chosen = 0;
     for (int draw = 0; draw < draws; ++draw) {
@@ -257,12 +261,15 @@ Clustering cluster_once(const Data& data, const KMeansRequest& request, std::uin
   state.nearest_other.assign(data.count, 0);
   Blocks blocks(data);
   int rounds = 0;
-  while (rounds < kMostRounds && assign(data, blocks, state)) {
+  while (rounds < kMostRounds && !is_stopped(request) && assign(data, blocks, state)) {
     fill_empty(data, state, clusters);
     move_centres(data, state);
     ++rounds;
   }
   Clustering result;
+  if (is_stopped(request)) {
+    return result;  // some points may have no label yet
+  }
   result.labels = std::move(state.labels);
   result.centres = std::move(state.centres);
   result.rounds = rounds;
@@ -317,11 +324,14 @@ Result<Clustering> k_means(std::span<const double> points, const KMeansRequest& 
   GRAVURE_CHECK(check(points, request));
   const Data data{points.data(), points.size() / request.dimensions, request.dimensions};
   Clustering best = cluster_once(data, request, 0);
-  for (int start = 1; start < request.starts; ++start) {
+  for (int start = 1; start < request.starts && !is_stopped(request); ++start) {
     Clustering other = cluster_once(data, request, static_cast<std::uint64_t>(start));
     if (other.inertia < best.inertia) {
       best = std::move(other);
     }
+  }
+  if (is_stopped(request)) {
+    return Error{ErrorCode::cancelled, "stopped before k-means was done"};
   }
   renumber(best, request.dimensions);
   return best;

@@ -62,11 +62,12 @@ Zone published_zone(const std::vector<Piece>& pieces, const std::vector<std::siz
 }
 
 Result<ZoneSet> cluster(const std::vector<Piece>& pieces, const std::vector<double>& features, std::size_t clusters,
-                        std::uint64_t seed) {
+                        std::uint64_t seed, const ZoneWatch& watch) {
   KMeansRequest request;
   request.clusters = clusters;
   request.dimensions = kDimensions;
   request.seed = seed;
+  request.cancel = watch.cancel;
   GRAVURE_TRY(const Clustering found, k_means(features, request));
   ZoneSet set;
   set.clusters = clusters;
@@ -99,7 +100,7 @@ void add_violations(const ZoneLimits& limits, ZoneSet& set) {
 /// The fewest clusters from `first` to `last` that meet the limits; where none do, `last` clusters and their
 /// violations.
 Result<ZoneSet> fewest_clusters(const std::vector<Piece>& pieces, const ZoneLimits& limits, std::size_t first,
-                                std::size_t last, const KMeansZones& options) {
+                                std::size_t last, const KMeansZones& options, const ZoneWatch& watch) {
   const std::vector<double> features = features_of(pieces, options.normalised);
   std::size_t looks = 0;  // at a piece from a centre, as far as that is known beforehand
   for (std::size_t clusters = first;; ++clusters) {
@@ -110,7 +111,9 @@ Result<ZoneSet> fewest_clusters(const std::vector<Piece>& pieces, const ZoneLimi
                                "are not tried: give k, or wider limits",
                                clusters - 1, pieces.size())};
     }
-    GRAVURE_TRY(ZoneSet set, cluster(pieces, features, clusters, options.seed));
+    GRAVURE_CHECK(watch.go_on());
+    watch.tell(ZonePart::k_means, clusters - first, last - first + 1);
+    GRAVURE_TRY(ZoneSet set, cluster(pieces, features, clusters, options.seed, watch));
     add_violations(limits, set);
     if (set.violations.empty() || clusters >= last) {
       return set;
@@ -120,11 +123,11 @@ Result<ZoneSet> fewest_clusters(const std::vector<Piece>& pieces, const ZoneLimi
 
 }  // namespace
 
-void take_k_means(const std::vector<Piece>& pieces, const ZoneLimits& limits, ZoneSet& set) {
+void take_k_means(const std::vector<Piece>& pieces, const ZoneLimits& limits, const ZoneWatch& watch, ZoneSet& set) {
   if (set.zones.size() <= set.lower_bound) {
     return;
   }
-  Result<ZoneSet> fewer = fewest_clusters(pieces, limits, set.lower_bound, set.zones.size() - 1, {});
+  Result<ZoneSet> fewer = fewest_clusters(pieces, limits, set.lower_bound, set.zones.size() - 1, {}, watch);
   if (!fewer || !fewer.value().violations.empty()) {
     return;
   }
@@ -134,12 +137,14 @@ void take_k_means(const std::vector<Piece>& pieces, const ZoneLimits& limits, Zo
   }
 }
 
-Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const KMeansZones& options) {
+Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const KMeansZones& options,
+                              const ZoneWatch& watch) {
   GRAVURE_CHECK(check_limits(pieces, limits));
-  const std::size_t bound = lower_bound_of(pieces, limits);
+  GRAVURE_TRY(const std::size_t bound, lower_bound_of(pieces, limits, watch));
   const std::size_t first = options.clusters > 0 ? options.clusters : bound;
   const std::size_t last = options.clusters > 0 ? options.clusters : pieces.size();
-  GRAVURE_TRY(ZoneSet set, fewest_clusters(pieces, limits, first, last, options));
+  GRAVURE_TRY(ZoneSet set, fewest_clusters(pieces, limits, first, last, options, watch));
+  measure_zones(pieces, set.zones);
   set.lower_bound = bound;
   return set;
 }

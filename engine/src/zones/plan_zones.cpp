@@ -17,27 +17,21 @@ constexpr std::size_t kMostViolations = 20;
 /// The times between all of them are in memory at once.
 constexpr std::size_t kMostZones = 500;
 
-/// Between the parts of the plan: the number of those that are done.
-Result<void> go_on(const ZonePlanRequest& request, std::int64_t done) {
-  constexpr std::int64_t kParts = 4;
-  if (request.cancel != nullptr && request.cancel->cancelled()) {
-    return Error{ErrorCode::cancelled, "stopped before the zones were planned"};
-  }
-  if (request.progress != nullptr) {
-    request.progress->update(done, kParts);
+Result<void> check_count(std::size_t zones, const ZonePlanRequest& request) {
+  if (zones > kMostZones) {
+    return Error{ErrorCode::out_of_range,
+                 fmt::format("max_incidence_deg = {:.6g}: {} zones: at most {} are put in order: allow more incidence, "
+                             "or give a larger field or part of the contours",
+                             request.max_incidence_rad * 180 / std::numbers::pi, zones, kMostZones)};
   }
   return {};
 }
 
 Result<ZoneSet> zones_of(const std::vector<Piece>& pieces, const ZonePlanRequest& request, const ZoneLimits& limits) {
-  GRAVURE_TRY(ZoneSet set, request.method == Method::cover ? cover_zones(pieces, limits)
-                                                           : k_means_zones(pieces, limits, request.kmeans));
-  if (set.zones.size() > kMostZones) {
-    return Error{ErrorCode::out_of_range,
-                 fmt::format("max_incidence_deg = {:.6g}: {} zones: at most {} are put in order: allow more incidence, "
-                             "or give a larger field or part of the contours",
-                             request.max_incidence_rad * 180 / std::numbers::pi, set.zones.size(), kMostZones)};
-  }
+  GRAVURE_TRY(ZoneSet set, request.method == Method::cover
+                               ? cover_zones(pieces, limits, request.watch)
+                               : k_means_zones(pieces, limits, request.kmeans, request.watch));
+  GRAVURE_CHECK(check_count(set.zones.size(), request));
   return set;
 }
 
@@ -121,9 +115,8 @@ Result<ZonePlan> plan_zones(const ZonePlanRequest& request) {
   const double field_mm = request.machine.head.field_mm;
   const ZoneLimits limits{request.max_incidence_rad, field_mm - 2 * std::min(kSwing_mm, field_mm / 100)};
   GRAVURE_TRY(plan.pieces, cut_to_field(request.contours, limits.field_mm));
-  GRAVURE_CHECK(go_on(request, 0));
+  GRAVURE_CHECK(request.watch.go_on());
   GRAVURE_TRY(const ZoneSet set, zones_of(plan.pieces, request, limits));
-  GRAVURE_CHECK(go_on(request, 1));
   plan.lower_bound = set.lower_bound;
   plan.clusters = set.clusters;
   plan.inertia = set.inertia;
@@ -134,16 +127,21 @@ Result<ZonePlan> plan_zones(const ZonePlanRequest& request) {
     GRAVURE_TRY(const PlannedZone planned, lay_out(plan.pieces, zone, request.max_layer_mm));
     return check_travel(request.machine, stops_of(planned));
   };
-  for (Zone zone : set.zones) {
-    GRAVURE_CHECK(turn_within_travel(request.contours, plan.pieces, limits, request.machine, is_reached, zone));
-    GRAVURE_TRY(PlannedZone planned, lay_out(plan.pieces, zone, request.max_layer_mm));
-    stops.push_back(stops_of(planned));
-    zones.push_back(std::move(planned));
+  for (const Zone& zone : set.zones) {
+    GRAVURE_CHECK(request.watch.go_on());
+    request.watch.tell(ZonePart::travel, zones.size(), set.zones.size() + plan.added_for_travel);
+    GRAVURE_TRY(const std::vector<Zone> parts,
+                zones_within_travel(request.contours, plan.pieces, limits, request.machine, is_reached, zone));
+    plan.added_for_travel += parts.size() - 1;
+    for (const Zone& part : parts) {
+      GRAVURE_TRY(PlannedZone planned, lay_out(plan.pieces, part, request.max_layer_mm));
+      stops.push_back(stops_of(planned));
+      zones.push_back(std::move(planned));
+    }
   }
-  GRAVURE_CHECK(go_on(request, 2));
+  GRAVURE_CHECK(check_count(zones.size(), request));
   const JointPositions start(request.machine.joints.size(), 0);
-  GRAVURE_TRY(const Tour tour, plan_tour(request.machine, stops, start));
-  GRAVURE_CHECK(go_on(request, 3));
+  GRAVURE_TRY(const Tour tour, plan_tour(request.machine, stops, start, request.watch));
   plan.tour_time_s = tour.time_s;
   plan.naive_time_s = tour.naive_time_s;
   plan.is_tour_proved = tour.is_proved;

@@ -21,9 +21,10 @@ constexpr std::size_t kMostMoveLooks = 20'000'000;
 
 class Refiner {
  public:
-  Refiner(const std::vector<Piece>& pieces, const ZoneLimits& limits, std::vector<Zone>& zones)
-      : pieces_(pieces), limits_(limits), zones_(zones), home_(pieces.size()) {
+  Refiner(const std::vector<Piece>& pieces, const ZoneLimits& limits, const ZoneWatch& watch, std::vector<Zone>& zones)
+      : pieces_(pieces), limits_(limits), watch_(watch), zones_(zones), home_(pieces.size()) {
     for (std::size_t z = 0; z < zones.size(); ++z) {
+      costs_.push_back(squared_angles(pieces, zones[z]));
       for (const std::size_t i : zones[z].pieces) {
         home_[i] = z;
       }
@@ -33,7 +34,8 @@ class Refiner {
   /// Once through all pieces; did one move?
   bool sweep() {
     bool moved = false;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    for (std::size_t i = 0; i < pieces_.size() && !watch_.stopped(); ++i) {
+      watch_.tell(ZonePart::refine, kMostMoveLooks - looks_left_, kMostMoveLooks);
       moved = move(i) || moved;
     }
     return moved;
@@ -68,11 +70,16 @@ class Refiner {
     looks_left_ -= grown.size() + left.size();
     const std::optional<Zone> new_to = zone_of(pieces_, grown, limits_, zones_[to].direction);
     const std::optional<Zone> new_from = zone_of(pieces_, left, limits_, zones_[from].direction);
-    if (!new_to || !new_from ||
-        squared_angles(pieces_, *new_to) + squared_angles(pieces_, *new_from) + kGain >=
-            squared_angles(pieces_, zones_[to]) + squared_angles(pieces_, zones_[from])) {
+    if (!new_to || !new_from) {
       return false;
     }
+    const double cost_to = squared_angles(pieces_, *new_to);
+    const double cost_from = squared_angles(pieces_, *new_from);
+    if (cost_to + cost_from + kGain >= costs_[to] + costs_[from]) {
+      return false;
+    }
+    costs_[to] = cost_to;
+    costs_[from] = cost_from;
     zones_[to] = *new_to;
     zones_[from] = *new_from;
     home_[piece] = to;
@@ -81,16 +88,19 @@ class Refiner {
 
   const std::vector<Piece>& pieces_;
   const ZoneLimits& limits_;
+  const ZoneWatch& watch_;
   std::vector<Zone>& zones_;
   std::vector<std::size_t> home_;
+  std::vector<double> costs_;  ///< squared angles of each zone
   std::size_t looks_left_ = kMostMoveLooks;
 };
 
 }  // namespace
 
-void refine_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, std::vector<Zone>& zones) {
+void refine_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const ZoneWatch& watch,
+                  std::vector<Zone>& zones) {
   constexpr int kMostSweeps = 100;
-  Refiner refiner(pieces, limits, zones);
+  Refiner refiner(pieces, limits, watch, zones);
   for (int sweep = 0; sweep < kMostSweeps && refiner.sweep(); ++sweep) {
   }
 }

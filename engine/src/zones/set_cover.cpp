@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <utility>
 
 namespace gravure::zones {
 namespace {
@@ -12,12 +13,13 @@ constexpr std::size_t kMostSteps = 4'000'000;
 
 class Search {
  public:
-  Search(const std::vector<Bits>& sets, std::size_t elements)
+  Search(const std::vector<Bits>& sets, std::size_t elements, const ZoneWatch& watch)
       : sets_(sets),
+        watch_(watch),
         owners_(elements),
         neighbours_(elements, Bits(elements)),
         nodes_left_(kMostSteps / (elements + 1)) {
-    for (std::size_t s = 0; s < sets.size(); ++s) {
+    for (std::size_t s = 0; s < sets.size() && !watch.stopped(); ++s) {
       for (const std::size_t e : sets[s].members()) {
         owners_[e].push_back(s);
         neighbours_[e].add(sets[s]);
@@ -39,7 +41,7 @@ class Search {
   /// Always the set with most that is missing; of equals the first.
   std::vector<std::size_t> greedy(Bits uncovered) const {
     std::vector<std::size_t> chosen;
-    while (!uncovered.empty()) {
+    while (!uncovered.empty() && !watch_.stopped()) {
       std::size_t best = 0;
       std::size_t most = 0;
       for (std::size_t s = 0; s < sets_.size(); ++s) {
@@ -78,15 +80,19 @@ class Search {
       }
       return;
     }
+    if (watch_.stopped()) {
+      nodes_left_ = 0;
+    }
     if (nodes_left_ == 0 || chosen_.size() + bound(uncovered) >= best_.size()) {
       return;
     }
     --nodes_left_;
-    std::vector<std::size_t> options = owners_[hardest(uncovered)];
-    std::stable_sort(options.begin(), options.end(), [&](std::size_t a, std::size_t b) {
-      return sets_[a].count_common(uncovered) > sets_[b].count_common(uncovered);
-    });
-    for (const std::size_t s : options) {
+    std::vector<std::pair<std::size_t, std::size_t>> options;  // what it adds, the set
+    for (const std::size_t s : owners_[hardest(uncovered)]) {
+      options.emplace_back(sets_[s].count_common(uncovered), s);
+    }
+    std::stable_sort(options.begin(), options.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (const auto& [news, s] : options) {
       Bits rest = uncovered;
       rest.remove(sets_[s]);
       chosen_.push_back(s);
@@ -96,12 +102,27 @@ class Search {
   }
 
   const std::vector<Bits>& sets_;
+  const ZoneWatch& watch_;
   std::vector<std::vector<std::size_t>> owners_;
   std::vector<Bits> neighbours_;
   std::size_t nodes_left_;
   std::vector<std::size_t> chosen_;
   std::vector<std::size_t> best_;
 };
+
+/// The numbers of the sets by how much is in them, of equal ones the lower first.
+std::vector<std::size_t> by_count(const std::vector<Bits>& sets, bool most_first) {
+  std::vector<std::size_t> counts;
+  for (const Bits& set : sets) {
+    counts.push_back(set.count());
+  }
+  std::vector<std::size_t> order(sets.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return most_first ? counts[a] > counts[b] : counts[a] < counts[b];
+  });
+  return order;
+}
 
 }  // namespace
 
@@ -154,31 +175,38 @@ std::vector<std::size_t> Bits::members() const {
   return members;
 }
 
-std::vector<std::size_t> maximal_sets(const std::vector<Bits>& sets) {
-  std::vector<std::size_t> by_size(sets.size());
-  std::iota(by_size.begin(), by_size.end(), std::size_t{0});
-  std::stable_sort(by_size.begin(), by_size.end(),
-                   [&](std::size_t a, std::size_t b) { return sets[a].count() > sets[b].count(); });
+std::vector<std::size_t> maximal_sets(const std::vector<Bits>& sets, const ZoneWatch& watch) {
   std::vector<std::size_t> kept;
-  for (const std::size_t s : by_size) {
-    if (std::none_of(kept.begin(), kept.end(), [&](std::size_t k) { return sets[s].is_subset_of(sets[k]); })) {
+  std::vector<std::vector<std::size_t>> owners;  // the kept sets that hold an element
+  for (const std::size_t s : by_count(sets, true)) {
+    const std::vector<std::size_t> members = sets[s].members();
+    if (watch.stopped() || members.empty()) {
+      break;
+    }
+    owners.resize(std::max(owners.size(), members.back() + 1));
+    // What holds the set holds its rarest element.
+    const std::size_t rarest = *std::min_element(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
+      return owners[a].size() < owners[b].size();
+    });
+    const std::vector<std::size_t>& may_hold = owners[rarest];
+    if (std::none_of(may_hold.begin(), may_hold.end(), [&](std::size_t k) { return sets[s].is_subset_of(sets[k]); })) {
       kept.push_back(s);
+      for (const std::size_t e : members) {
+        owners[e].push_back(s);
+      }
     }
   }
   std::sort(kept.begin(), kept.end());
   return kept;
 }
 
-SetCover smallest_cover(const std::vector<Bits>& sets, std::size_t elements) {
-  return Search(sets, elements).run();
+SetCover smallest_cover(const std::vector<Bits>& sets, std::size_t elements, const ZoneWatch& watch) {
+  return Search(sets, elements, watch).run();
 }
 
 std::size_t largest_packing(const std::vector<Bits>& neighbours) {
   const std::size_t elements = neighbours.size();
-  std::vector<std::size_t> order(elements);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return neighbours[a].count() < neighbours[b].count(); });
+  const std::vector<std::size_t> order = by_count(neighbours, false);
   std::size_t largest = 0;
   for (std::size_t start = 0; start < elements; ++start) {
     Bits taken = neighbours[start];

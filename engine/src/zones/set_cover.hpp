@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "gravure/zones/zone_watch.hpp"
+
 namespace gravure::zones {
 
 /// A set of small numbers.
@@ -26,8 +28,8 @@ class Bits {
   std::vector<std::uint64_t> words_;
 };
 
-/// Which of the sets no other one holds; of equal ones the first. In ascending order.
-std::vector<std::size_t> maximal_sets(const std::vector<Bits>& sets);
+/// Which of the sets no other one holds; of equal ones the first. In ascending order. Some of them where `watch` stops.
+std::vector<std::size_t> maximal_sets(const std::vector<Bits>& sets, const ZoneWatch& watch = {});
 
 struct SetCover {
   std::vector<std::size_t> chosen;  ///< of the sets, in the order of choice
@@ -36,8 +38,8 @@ struct SetCover {
 
 /// Fewest sets that hold 0 .. elements - 1 between them; every element is in one of them at least. Branch and bound
 /// from the greedy cover over the element with the fewest sets; it gives up the proof, not the cover, after
-/// millions of steps.
-SetCover smallest_cover(const std::vector<Bits>& sets, std::size_t elements);
+/// millions of steps, or where `watch` stops.
+SetCover smallest_cover(const std::vector<Bits>& sets, std::size_t elements, const ZoneWatch& watch = {});
 
 /// Size of a set of elements, found greedily from every start, of which no two are neighbours.
 std::size_t largest_packing(const std::vector<Bits>& neighbours);

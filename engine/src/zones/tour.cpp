@@ -113,7 +113,8 @@ struct Ways {
   TourTimes times;
 };
 
-Result<Ways> time_ways(const Machine& machine, const std::vector<Stops>& zones, const JointPositions& start) {
+Result<Ways> time_ways(const Machine& machine, const std::vector<Stops>& zones, const JointPositions& start,
+                       const ZoneWatch& watch) {
   Ways ways;
   ways.times.first.push_back(0);
   for (std::size_t z = 0; z < zones.size(); ++z) {
@@ -137,6 +138,8 @@ Result<Ways> time_ways(const Machine& machine, const std::vector<Stops>& zones, 
     ways.times.inside_s.push_back(inside);
   }
   for (const Way& from : ways.all) {
+    GRAVURE_CHECK(watch.go_on());
+    watch.tell(ZonePart::tour, ways.times.between_s.size(), 2 * ways.all.size());  // and as long for the order
     std::vector<double> row;
     for (const Way& to : ways.all) {
       GRAVURE_TRY(const double time, time_between(machine, from.back(), to.front()));
@@ -195,14 +198,16 @@ Result<double> move_time_s(const Machine& machine, const JointPositions& from, c
   return time;
 }
 
-Result<Tour> plan_tour(const Machine& machine, const std::vector<Stops>& zones, const JointPositions& start) {
+Result<Tour> plan_tour(const Machine& machine, const std::vector<Stops>& zones, const JointPositions& start,
+                       const ZoneWatch& watch) {
   GRAVURE_CHECK(check_limits(machine));
   if (zones.empty() || start.size() != machine.joints.size() ||
       std::any_of(zones.begin(), zones.end(), [](const Stops& stops) { return stops.layers.empty(); })) {
     return Error{ErrorCode::bad_argument, "a tour needs a zone, a layer in each, and a start for each joint"};
   }
-  GRAVURE_TRY(Ways ways, time_ways(machine, zones, start));
-  const TourOrder order = shortest_order(ways.times);
+  GRAVURE_TRY(Ways ways, time_ways(machine, zones, start, watch));
+  const TourOrder order = shortest_order(ways.times, watch);
+  GRAVURE_CHECK(watch.go_on());
   Tour tour;
   tour.time_s = order.time_s;
   tour.naive_time_s = naive_time(ways.times);

@@ -111,8 +111,9 @@ constexpr std::size_t kMostTourSteps = 100'000'000;
 /// these gains.
 class Improver {
  public:
-  Improver(const TourTimes& times, std::vector<std::size_t> order)
+  Improver(const TourTimes& times, std::vector<std::size_t> order, const ZoneWatch& watch)
       : times_(times),
+        watch_(watch),
         order_(std::move(order)),
         best_(best_ways(times, order_)),
         tries_left_(kMostTourSteps / order_.size()) {}
@@ -130,7 +131,7 @@ class Improver {
 
  private:
   bool accept(const std::vector<std::size_t>& order) {
-    --tries_left_;
+    tries_left_ = watch_.stopped() ? 0 : tries_left_ - 1;
     TourOrder other = best_ways(times_, order);
     if (!(other.time_s < best_.time_s - kGain_s)) {
       return false;
@@ -172,6 +173,7 @@ class Improver {
   }
 
   const TourTimes& times_;
+  const ZoneWatch& watch_;
   std::vector<std::size_t> order_;
   TourOrder best_;
   std::size_t tries_left_;
@@ -213,8 +215,8 @@ TourOrder best_ways(const TourTimes& times, const std::vector<std::size_t>& orde
   return best;
 }
 
-TourOrder shortest_order(const TourTimes& times) {
-  return times.zones() <= kMostProved ? SetTimes(times).run() : Improver(times, nearest_neighbour(times)).run();
+TourOrder shortest_order(const TourTimes& times, const ZoneWatch& watch) {
+  return times.zones() <= kMostProved ? SetTimes(times).run() : Improver(times, nearest_neighbour(times), watch).run();
 }
 
 }  // namespace gravure::zones

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "gravure/zones/zone_watch.hpp"
+
 namespace gravure::zones {
 
 /// Times between the ways in which zones can be visited. Way w of zone z is number first[z] + w.
@@ -23,8 +25,8 @@ struct TourOrder {
 };
 
 /// The fastest for up to kMostProved zones, else by 2-opt and Or-opt from the nearest neighbour; each zone has one way
-/// or more.
-TourOrder shortest_order(const TourTimes& times);
+/// or more. Some order where `watch` stops.
+TourOrder shortest_order(const TourTimes& times, const ZoneWatch& watch = {});
 inline constexpr std::size_t kMostProved = 12;
 
 /// The fastest ways for an order of zones.

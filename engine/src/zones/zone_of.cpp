@@ -72,12 +72,7 @@ Zone describe_zone(const std::vector<Piece>& pieces, std::vector<std::size_t> wh
   const Extent extent = extent_of(pieces, which, frame_of(direction));
   Zone zone;
   zone.direction = direction;
-  for (const Vector3& of_piece : directions) {
-    zone.max_incidence_rad = std::max(zone.max_incidence_rad, angle_between(direction, of_piece));
-  }
-  const Result<Cone> cone = enclosing_cone(directions);
-  zone.cone_rad = cone ? cone.value().half_angle_rad : std::numbers::pi / 2;
-  zone.max_pairwise_rad = largest_angle(directions);
+  zone.max_incidence_rad = largest_angle_from(direction, directions);
   zone.width_mm = extent.most.x() - extent.least.x();
   zone.height_mm = extent.most.y() - extent.least.y();
   zone.pieces = std::move(which);
@@ -123,6 +118,15 @@ void sort_zones(std::vector<Zone>& zones) {
     std::sort(zone.pieces.begin(), zone.pieces.end());
   }
   std::sort(zones.begin(), zones.end(), [](const Zone& a, const Zone& b) { return a.pieces[0] < b.pieces[0]; });
+}
+
+void measure_zones(const std::vector<Piece>& pieces, std::vector<Zone>& zones) {
+  for (Zone& zone : zones) {
+    const std::vector<Vector3> directions = directions_of(pieces, zone.pieces);
+    const Result<Cone> cone = enclosing_cone(directions);
+    zone.cone_rad = cone ? cone.value().half_angle_rad : std::numbers::pi / 2;
+    zone.max_pairwise_rad = largest_angle(directions);
+  }
 }
 
 bool are_apart(const Piece& a, const Piece& b, const ZoneLimits& limits) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -96,36 +97,71 @@ std::optional<Zone> within_travel(const std::vector<Piece>& pieces, const ZoneLi
   return best;
 }
 
+/// Of two pieces or more those nearer to one, and to the other, of two that are far apart: in direction, or in place
+/// where their directions are the same.
+std::array<std::vector<std::size_t>, 2> halves_of(const std::vector<Piece>& pieces,
+                                                  const std::vector<std::size_t>& which) {
+  const auto by_direction = [&pieces](std::size_t a, std::size_t b) {
+    return (pieces[a].direction - pieces[b].direction).norm();
+  };
+  const auto by_place = [&pieces](std::size_t a, std::size_t b) {
+    return (pieces[a].points_mm[0] - pieces[b].points_mm[0]).norm();
+  };
+  std::array<std::vector<std::size_t>, 2> halves;
+  const auto part_by = [&](const auto& way) {
+    const auto farthest_from = [&](std::size_t piece) {
+      return *std::max_element(which.begin(), which.end(),
+                               [&](std::size_t a, std::size_t b) { return way(piece, a) < way(piece, b); });
+    };
+    const std::size_t one = farthest_from(which[0]);
+    const std::size_t other = farthest_from(one);
+    halves = {};
+    for (const std::size_t i : which) {
+      halves[way(one, i) <= way(other, i) ? 0 : 1].push_back(i);
+    }
+    return !halves[1].empty();
+  };
+  if (!part_by(by_direction) && !part_by(by_place)) {  // the same line twice
+    const auto middle = which.begin() + static_cast<std::ptrdiff_t>(which.size() / 2);
+    halves = {std::vector<std::size_t>(which.begin(), middle), std::vector<std::size_t>(middle, which.end())};
+  }
+  return halves;
+}
+
 }  // namespace
 
-Result<void> turn_within_travel(const std::vector<Contour>& contours, const std::vector<Piece>& pieces,
-                                const ZoneLimits& limits, const kinematics::Machine& machine, const ZoneCheck& check,
-                                Zone& zone) {
-  Result<void> reached = check(zone);
+Result<std::vector<Zone>> zones_within_travel(const std::vector<Contour>& contours, const std::vector<Piece>& pieces,
+                                              const ZoneLimits& limits, const kinematics::Machine& machine,
+                                              const ZoneCheck& check, const Zone& zone) {
+  const Result<void> reached = check(zone);
   if (reached) {
-    return {};
+    return std::vector<Zone>{zone};
   }
   if (std::optional<Zone> turned = within_travel(pieces, limits, machine, check, zone)) {
-    zone = *std::move(turned);
-    return {};
+    turned->cone_rad = zone.cone_rad;  // of the same pieces
+    turned->max_pairwise_rad = zone.max_pairwise_rad;
+    return std::vector<Zone>{*std::move(turned)};
   }
-  std::size_t named = zone.pieces[0];  // of contours that can be reached one by one alone, the first
-  for (const std::size_t i : zone.pieces) {
-    const Zone alone = describe_zone(pieces, {i}, pieces[i].direction);
-    const Result<void> alone_reached = check(alone);
-    if (!alone_reached && !within_travel(pieces, limits, machine, check, alone)) {
-      named = i;
-      reached = alone_reached;
-      break;
-    }
+  if (zone.pieces.size() == 1) {
+    return Error{
+        reached.error().code,
+        fmt::format("contour {}: {}: no direction found within {:.6g} deg of its own is within travel: allow more "
+                    "incidence, clamp the part another way and move its contours with it, or take a machine of more "
+                    "travel",
+                    contours[pieces[zone.pieces[0]].contour].id, reached.error().message,
+                    limits.incidence_rad * 180 / std::numbers::pi)};
   }
-  return Error{
-      reached.error().code,
-      fmt::format("contour {}: {}: no direction found within {:.6g} deg of its zone's contours is within travel: "
-                  "allow more incidence, clamp the part another way and move its contours with it, or take a "
-                  "machine of more travel",
-                  contours[pieces[named].contour].id, reached.error().message,
-                  limits.incidence_rad * 180 / std::numbers::pi)};
+  std::vector<Zone> all;
+  for (const std::vector<std::size_t>& half : halves_of(pieces, zone.pieces)) {
+    // What the whole zone has in its field and its limits, each half has from the same direction.
+    std::vector<Zone> part{
+        zone_of(pieces, half, limits, zone.direction).value_or(describe_zone(pieces, half, zone.direction))};
+    measure_zones(pieces, part);
+    GRAVURE_TRY(const std::vector<Zone> found,
+                zones_within_travel(contours, pieces, limits, machine, check, part.front()));
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  return all;
 }
 
 }  // namespace gravure::zones

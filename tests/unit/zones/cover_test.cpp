@@ -95,7 +95,7 @@ TEST(CoverZones, TakesKMeansWhereThatFindsFewer) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     each.zones.push_back(describe_zone(pieces, {i}, pieces[i].direction));
   }
-  take_k_means(pieces, limits, each);
+  take_k_means(pieces, limits, {}, each);
   expect_sound(pieces, limits, each);
   EXPECT_EQ(each.zones.size(), k_means_zones(pieces, limits, {}).value().zones.size());
 }
@@ -215,6 +215,34 @@ TEST(CoverZones, RefusesLimitsBeyondTheirRange) {
   EXPECT_EQ(cover_zones(one, {0.1, 0}).error().code, ErrorCode::out_of_range);
   EXPECT_EQ(cover_zones({}, {0.1, 1}).error().code, ErrorCode::bad_argument);
   EXPECT_EQ(k_means_zones(one, {0.1, 1}, {2, true, 1}).error().code, ErrorCode::out_of_range);
+}
+
+TEST(MaximalSets, AreThoseThatNoOtherHolds) {
+  SCOPED_TRACE(test::Dice::note());
+  test::Dice dice(63);
+  for (int trial = 0; trial < 200; ++trial) {
+    const auto elements = static_cast<std::size_t>(dice.between(1, 9));
+    std::vector<Bits> sets(static_cast<std::size_t>(dice.between(1, 30)), Bits(elements));
+    for (Bits& set : sets) {
+      set.set(static_cast<std::size_t>(dice.between(0, static_cast<std::int64_t>(elements) - 1)));
+      for (std::size_t e = 0; e < elements; ++e) {
+        if (dice.between(0, 2) == 0) {
+          set.set(e);
+        }
+      }
+    }
+    std::vector<std::size_t> maximal;
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      bool is_held = false;
+      for (std::size_t t = 0; t < sets.size(); ++t) {
+        is_held = is_held || (sets[s].is_subset_of(sets[t]) && (!(sets[s] == sets[t]) || t < s));
+      }
+      if (!is_held) {
+        maximal.push_back(s);
+      }
+    }
+    EXPECT_EQ(maximal_sets(sets), maximal);
+  }
 }
 
 TEST(SmallestCover, IsTheSmallest) {

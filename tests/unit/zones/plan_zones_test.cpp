@@ -121,11 +121,76 @@ TEST(PlanZones, NamesTheContourThatNoTravelReaches) {
   const Result<ZonePlan> plan = plan_zones(tilted_request({120, 126}));
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, ErrorCode::out_of_range);
-  EXPECT_EQ(
-      plan.error().message,
-      "contour 8: layer 0: kinematics: joint A at 126 deg: its limits are -120 to 120: no direction found within 5 "
-      "deg of its zone's contours is within travel: allow more incidence, clamp the part another way and move its "
-      "contours with it, or take a machine of more travel");
+  EXPECT_EQ(plan.error().message,
+            "contour 8: layer 0: kinematics: joint A at 126 deg: its limits are -120 to 120: no direction found within "
+            "5 deg of its own is within travel: allow more incidence, clamp the part another way and move its contours "
+            "with it, or take a machine of more travel");
+}
+
+/// Nine degrees from each other, all 123 deg from where A is 0: a direction within 5 deg of both is beyond 120 deg.
+TEST(PlanZones, HalvesAZoneWhoseContoursAreWithinTravelOnlyApart) {
+  ZonePlanRequest request = tilted_request({123, 123, 123, 123});
+  const double half = std::asin(std::sin(4.5 * std::numbers::pi / 180) / std::sin(123 * std::numbers::pi / 180));
+  for (std::size_t i = 0; i < request.contours.size(); ++i) {
+    Contour& contour = request.contours[i];
+    const double turn = i % 2 == 0 ? half : -half;
+    contour.direction = {contour.direction[1] * std::sin(turn), contour.direction[1] * std::cos(turn),
+                         contour.direction[2]};
+    contour.points_mm[0][0] += static_cast<double>(i);
+    contour.points_mm[1][0] += static_cast<double>(i);
+  }
+  const Result<ZonePlan> plan = plan_zones(request);
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_TRUE(plan.value().violations.empty());
+  EXPECT_EQ(plan.value().lower_bound, 1U);
+  EXPECT_EQ(plan.value().added_for_travel, 1U);
+  ASSERT_EQ(plan.value().zones.size(), 2U);
+  for (const PlannedZone& zone : plan.value().zones) {
+    EXPECT_EQ(zone.zone.pieces.size(), 2U);
+    EXPECT_LE(zone.zone.max_incidence_rad, request.max_incidence_rad + 1e-9);
+    EXPECT_LE(std::abs(zone.layers[0].joints[3]) * 180 / std::numbers::pi, 120);
+  }
+}
+
+/// Told once too often, it asks to stop.
+class Stopping final : public Progress {
+ public:
+  explicit Stopping(int calls) : calls_left_(calls) {}
+  void update(std::int64_t done, std::int64_t total) override {
+    EXPECT_LE(last_, done);
+    EXPECT_LE(done, total);
+    last_ = done;
+    if (calls_left_-- == 0) {
+      token.cancel();
+    }
+  }
+  CancelToken token;
+
+ private:
+  int calls_left_;
+  std::int64_t last_ = 0;
+};
+
+TEST(PlanZones, StopsWhereverItIsAskedTo) {
+  for (const Method method : {Method::cover, Method::kmeans}) {
+    ZonePlanRequest request = core_request();
+    request.method = method;
+    const ZonePlan undisturbed = plan_zones(request).value();
+    int calls = 0;
+    for (bool stopped = true; stopped; ++calls) {
+      Stopping stopping(calls);
+      request.watch = {&stopping.token, &stopping};
+      const Result<ZonePlan> plan = plan_zones(request);
+      stopped = stopping.token.cancelled();
+      ASSERT_EQ(static_cast<bool>(plan), !stopped) << calls;
+      if (stopped) {
+        EXPECT_EQ(plan.error().code, ErrorCode::cancelled);
+      } else {
+        EXPECT_EQ(plan.value().tour_time_s, undisturbed.tour_time_s);
+      }
+    }
+    EXPECT_GT(calls, 20);
+  }
 }
 
 TEST(PlanZones, RefusesWhatItCannotDo) {

@@ -24,6 +24,9 @@ struct Cone {
 /// with bad_argument for no direction.
 Result<Cone> enclosing_cone(std::span<const Vector3> directions);
 
+/// Largest angle between an axis and any of the directions.
+double largest_angle_from(const Vector3& axis, std::span<const Vector3> directions) noexcept;
+
 /// Largest angle between any two of the directions.
 double largest_angle(std::span<const Vector3> directions) noexcept;
 

@@ -8,6 +8,7 @@
 #include "gravure/core/error.hpp"
 #include "gravure/zones/cone.hpp"
 #include "gravure/zones/piece.hpp"
+#include "gravure/zones/zone_watch.hpp"
 
 namespace gravure::zones {
 
@@ -43,8 +44,9 @@ struct ZoneSet {
 /// breaks and the cones shrink. Each zone's cone is exact.
 ///
 /// The lower bound is the fewest circles that hold all directions, where the search proves it, and never less than the
-/// largest set found of pieces no two of which can share a zone. Errors: out_of_range for limits beyond their range.
-Result<ZoneSet> cover_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits);
+/// largest set found of pieces no two of which can share a zone. Errors: out_of_range for limits beyond their range;
+/// cancelled.
+Result<ZoneSet> cover_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const ZoneWatch& watch = {});
 
 struct KMeansZones {
   std::size_t clusters = 0;  ///< 0: the fewest that meet the limits
@@ -55,6 +57,7 @@ struct KMeansZones {
 /// The published way: k-means on position and direction of each piece, positions scaled to 0 .. 1 by (x - min) / (max -
 /// min); [D] divides by the maximum, which fails for parts about or off the origin. A zone's direction is the centre of
 /// its directions, of length 1. A number of clusters that was given and breaks the limits is a result with violations.
-Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const KMeansZones& options);
+Result<ZoneSet> k_means_zones(const std::vector<Piece>& pieces, const ZoneLimits& limits, const KMeansZones& options,
+                              const ZoneWatch& watch = {});
 
 }  // namespace gravure::zones

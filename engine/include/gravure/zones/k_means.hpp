@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gravure/core/error.hpp"
+#include "gravure/core/progress.hpp"
 
 namespace gravure::zones {
 
@@ -14,6 +15,7 @@ struct KMeansRequest {
   std::size_t dimensions = 6;
   std::uint64_t seed = 1;
   int starts = 5;  ///< the one of least inertia is kept, of equals the first
+  const CancelToken* cancel = nullptr;
 };
 
 struct Clustering {
@@ -32,7 +34,7 @@ struct Clustering {
 ///
 /// `points` holds `dimensions` numbers a point. Points of fewer places than `clusters` give one cluster for each place.
 /// Fails with out_of_range for a number that is not finite (the point is named), no point, no cluster, or more
-/// clusters than points.
+/// clusters than points; with cancelled, looked at between rounds.
 Result<Clustering> k_means(std::span<const double> points, const KMeansRequest& request);
 
 }  // namespace gravure::zones

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "gravure/core/contour.hpp"
-#include "gravure/core/progress.hpp"
 #include "gravure/zones/cover.hpp"
 #include "gravure/zones/layers.hpp"
 #include "gravure/zones/local_frame.hpp"
@@ -22,8 +21,7 @@ struct ZonePlanRequest {
   double max_incidence_rad = 0;
   double max_layer_mm = 0;
   Machine machine;  ///< its head's field_mm is the scan field
-  CancelToken* cancel = nullptr;
-  Progress* progress = nullptr;  ///< of the parts of the plan
+  ZoneWatch watch;
 };
 
 /// One layer of a zone: where the stages stand and what the galvo marks.
@@ -45,6 +43,7 @@ struct ZonePlan {
   std::vector<Piece> pieces;
   std::vector<PlannedZone> zones;
   std::size_t lower_bound = 0;
+  std::size_t added_for_travel = 0;  ///< zones more, for contours that are within travel only apart
   std::size_t clusters = 0;
   double inertia = 0;
   double length_mm = 0;  ///< of all contours

@@ -6,6 +6,7 @@
 #include "gravure/core/error.hpp"
 #include "gravure/kinematics/inverse.hpp"
 #include "gravure/kinematics/machine.hpp"
+#include "gravure/zones/zone_watch.hpp"
 
 namespace gravure::zones {
 
@@ -39,7 +40,8 @@ Result<double> move_time_s(const Machine& machine, const JointPositions& from, c
 /// The order of zones, the branch of A for each and the turns of C that take the least time from `start` to the last
 /// layer. Proved by dynamic programming up to 12 zones; beyond, 2-opt and Or-opt from the nearest neighbour, the
 /// branches by dynamic programming along the order. Where the direction is along C's axis, C stands at 0. Errors as
-/// check_limits(), and as kinematics::inverse() naming zone and layer where no branch reaches it.
-Result<Tour> plan_tour(const Machine& machine, const std::vector<Stops>& zones, const JointPositions& start);
+/// check_limits(), and as kinematics::inverse() naming zone and layer where no branch reaches it; cancelled.
+Result<Tour> plan_tour(const Machine& machine, const std::vector<Stops>& zones, const JointPositions& start,
+                       const ZoneWatch& watch = {});
 
 }  // namespace gravure::zones

@@ -13,6 +13,7 @@
 #include "zones/zones_compile.hpp"
 #include "zones/zones_input.hpp"
 #include "zones/zones_plot.hpp"
+#include "zones/zones_program.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -93,6 +94,7 @@ Json plan_json(const ZonesArguments& options, const zones::ZonePlanRequest& requ
   Json document = {{"method", options.method},
                    {"zones", zones},
                    {"lower_bound", plan.lower_bound},
+                   {"added_for_travel", plan.added_for_travel},
                    {"contours", request.contours.size()},
                    {"length_mm", figure(plan.length_mm)},
                    {"tour",
@@ -117,7 +119,7 @@ std::string plan_text(const zones::ZonePlanRequest& request, const ZonePlan& pla
                                  plan.pieces.size() > request.contours.size()
                                      ? fmt::format(", cut into {} to fit the field", plan.pieces.size())
                                      : "");
-  text += fmt::format("zones        {}, at least {}\n", plan.zones.size(), plan.lower_bound);
+  text += fmt::format("zones        {}, at least {}{}\n", plan.zones.size(), plan.lower_bound, travel_text(plan));
   text += fmt::format("stage moves  {:.3f} s{}, {:.3f} s as they come\n", plan.tour_time_s,
                       plan.is_tour_proved ? " (no order is faster)" : "", plan.naive_time_s);
   text += fmt::format("{:>5} {:>9} {:>14} {:>13} {:>7} {:>9}  {}\n", "zone", "contours", "incidence deg",
@@ -151,10 +153,9 @@ Result<int> plan_contours(const ZonesArguments& options, const Command& command)
   request.kmeans = {options.k, !options.not_normalised, options.seed};
   request.max_incidence_rad = options.max_incidence_deg / kDegreesPerRad;
   request.max_layer_mm = options.layer_mm;
-  request.cancel = &cancel_token();
   const Result<ZonePlan> planned = [&request] {
-    ProgressBar bar("plan zones", "parts");
-    request.progress = &bar;
+    ProgressBar bar("plan zones", "steps");
+    request.watch = {&cancel_token(), &bar};
     return zones::plan_zones(request);
   }();
   GRAVURE_TRY(const ZonePlan plan, planned);

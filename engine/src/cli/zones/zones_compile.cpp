@@ -97,6 +97,7 @@ void report(const CompileOptions& options, const LoadedZonesJob& loaded, const Z
                  {"contours", loaded.request.contours.size()},
                  {"zones", plan.zones.size()},
                  {"lower_bound", plan.lower_bound},
+                 {"added_for_travel", plan.added_for_travel},
                  {"stops", times.stops},
                  {"strokes", times.strokes},
                  {"length_mm", figure(motion.length_mm())},
@@ -118,8 +119,8 @@ void report(const CompileOptions& options, const LoadedZonesJob& loaded, const Z
       fmt::format("{}: {:.3f} s in {} periods of {} us; {} pulses on {} contours of {:.3f} mm in all\n", options.output,
                   time_s, made.header.plan.rotary.lines_per_revolution, to_decimal_string(loaded.job.servo_us),
                   spacing.fired, loaded.request.contours.size(), motion.length_mm());
-  text += fmt::format("zones        {}, at least {}; {} stops, {} strokes; incidence {:.4f} deg at most, {}\n",
-                      plan.zones.size(), plan.lower_bound, times.stops, times.strokes,
+  text += fmt::format("zones        {}, at least {}{}; {} stops, {} strokes; incidence {:.4f} deg at most, {}\n",
+                      plan.zones.size(), plan.lower_bound, travel_text(plan), times.stops, times.strokes,
                       worst_incidence_rad(plan) * kDegreesPerRad,
                       thickest_layer_mm(plan) > 0 ? fmt::format("layers of {:.4f} mm", thickest_layer_mm(plan))
                                                   : "each flat: one layer");

@@ -32,9 +32,8 @@ std::optional<Rational> ten_digits(const std::optional<double>& value, double un
 
 Result<ZonePlan> plan_within_limits(const LoadedZonesJob& loaded) {
   zones::ZonePlanRequest request = loaded.request;
-  ProgressBar bar("plan zones", "parts");
-  request.cancel = &cancel_token();
-  request.progress = &bar;
+  ProgressBar bar("plan zones", "steps");
+  request.watch = {&cancel_token(), &bar};
   GRAVURE_TRY(ZonePlan plan, zones::plan_zones(request));
   if (plan.violations.empty()) {
     return plan;
@@ -136,6 +135,12 @@ Result<ZonesProgram> lay_out_zones(const LoadedZonesJob& loaded) {
                                 make_path_plan(plan_request(loaded), made.motion->instants(), made.pulses.count,
                                                static_cast<std::int64_t>(made.motion->targets().size()))));
   return made;
+}
+
+std::string travel_text(const ZonePlan& plan) {
+  return plan.added_for_travel == 0
+             ? ""
+             : fmt::format(", and {} more for contours that are within travel only apart", plan.added_for_travel);
 }
 
 Result<CompiledPath> compile_zones_program(const LoadedZonesJob& loaded, const ZonesProgram& made,

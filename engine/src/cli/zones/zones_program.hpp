@@ -21,6 +21,9 @@ struct ZonesProgram {
 /// where the zones break their limits. What is one key's doing is said with its place in the job.
 Result<ZonesProgram> lay_out_zones(const LoadedZonesJob& loaded);
 
+/// "; 1 of them because ...": zones that travel alone makes more; empty where none.
+std::string travel_text(const zones::ZonePlan& plan);
+
 /// Writes the program to `output`.
 Result<CompiledPath> compile_zones_program(const LoadedZonesJob& loaded, const ZonesProgram& made,
                                            const std::string& output);
