@@ -19,7 +19,7 @@ bool is_separator(char c) noexcept {
   return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r';
 }
 
-/// The next number of the line; false where there is none, or an empty cell before it.
+/// The next number of the line, finite or not; false where there is none, or an empty cell before it.
 bool take_number(std::string_view& line, double& value, bool first) {
   int commas = 0;
   while (!line.empty() && is_separator(line.front())) {
@@ -37,7 +37,7 @@ bool take_number(std::string_view& line, double& value, bool first) {
     return false;
   }
   line.remove_prefix(static_cast<std::size_t>(end - line.data()));
-  return std::isfinite(value) && (line.empty() || is_separator(line.front()));
+  return line.empty() || is_separator(line.front());
 }
 
 /// Words alone: nothing in it that is, or was meant as, a row.
@@ -100,8 +100,10 @@ Result<void> read_csv_rows(std::string_view text, const CsvColumns& columns,
     while (taken < columns.count && take_number(rest, values[taken], taken == 0)) {
       ++taken;
     }
-    if (taken == columns.count && is_blank_or_comment(rest)) {
-      row({values.data(), taken});
+    const bool is_finite = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+    if (taken == columns.count && is_blank_or_comment(rest) && (is_finite || columns.not_finite)) {
+      const std::span<const double> numbers(values.data(), taken);
+      is_finite ? row(numbers) : columns.not_finite(number, numbers);
       ++rows;
     } else if (!heading_allowed || !is_heading(line, columns.heading)) {
       const std::string heading =

@@ -1,5 +1,7 @@
 #include "gravure/registration/refine_contours.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -175,9 +177,11 @@ void place(const Contour& contour, const std::vector<Correction>& corrections, c
 }
 
 Result<void> check(const ContourOptions& options) {
-  if (!(options.crop_mm > 0) || !(options.bend_mm > 0) || !std::isfinite(options.crop_mm + options.bend_mm)) {
-    return Error{ErrorCode::bad_argument, "crop_mm = " + std::to_string(options.crop_mm) +
-                                              ", bend_mm = " + std::to_string(options.bend_mm) + ": must be above 0"};
+  for (const auto& [name, value] : {std::pair{"crop_mm", options.crop_mm}, {"bend_mm", options.bend_mm}}) {
+    if (!(value >= ContourOptions::kLeastMm && value <= ContourOptions::kMostMm)) {
+      return Error{ErrorCode::out_of_range, fmt::format("{} = {}: must be {} to {}", name, value,
+                                                        ContourOptions::kLeastMm, ContourOptions::kMostMm)};
+    }
   }
   return {};
 }

@@ -1,5 +1,7 @@
 #include "gravure/registration/register_scan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,7 +21,7 @@ constexpr double kWidestFit = 0.05;  // of the CAD's radius: points spread furth
 constexpr double kEstimatedWeakShare = 1e-3;  // what estimated normals are off by holds no direction
 
 Error out(const std::string& field, double value, const std::string& allowed) {
-  return {ErrorCode::bad_argument, field + " = " + std::to_string(value) + ": must be " + allowed};
+  return {ErrorCode::bad_argument, fmt::format("{} = {}: must be {}", field, value, allowed)};
 }
 
 Result<void> check_options(const RegistrationOptions& options) {

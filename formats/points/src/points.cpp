@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -27,12 +28,19 @@ Point3 unit_normal(const Point3& normal) noexcept {
   return {scaled[0] / length, scaled[1] / length, scaled[2] / length};
 }
 
+/// "1e+308": no digits that say nothing.
+std::string shortest_text(double value) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  return {digits, end};
+}
+
 Result<void> check_range(const PointSet& points, const std::string& name) {
   for (std::size_t i = 0; i < points.points_mm.size(); ++i) {
     for (const double value : points.points_mm[i]) {
       if (std::isfinite(value) && std::abs(value) > kMostCoordinateMm) {
         return Error{ErrorCode::bad_file, name + ": point " + std::to_string(i) + ": coordinate " +
-                                              std::to_string(value) +
+                                              shortest_text(value) +
                                               " mm: must be within 1e9 mm of 0; is the file in another unit?"};
       }
     }
@@ -48,7 +56,7 @@ std::vector<std::uint32_t> drop_points(PointFile& file) {
   std::uint32_t kept = 0;
   for (std::size_t i = 0; i < set.points_mm.size(); ++i) {
     if (!is_finite(set.points_mm[i])) {
-      ++file.dropped_points;
+      file.add_dropped("point " + std::to_string(i));
       continue;
     }
     now[i] = kept;
@@ -114,6 +122,14 @@ Result<PointFile> parse_points(std::string_view bytes, PointKind kind, const std
   GRAVURE_TRY(PointFile file, parse_kind(bytes, kind, name));
   GRAVURE_CHECK(check_range(file.points, name));
   drop_triangles(file, drop_points(file));
+  if (kind == PointKind::stl && file.triangles.empty()) {
+    return Error{ErrorCode::bad_file,
+                 name + ": no triangles" +
+                     (file.dropped_triangles > 0
+                          ? ": all " + std::to_string(file.dropped_triangles) + " have no area or no finite corners"
+                          : std::string()) +
+                     ": an STL must have one or more"};
+  }
   if (file.points.points_mm.empty()) {
     return Error{ErrorCode::bad_file, name + ": no points" +
                                           (file.dropped_points > 0 ? ": all " + std::to_string(file.dropped_points) +

@@ -59,7 +59,9 @@ const std::vector<Case>& cases() {
       {"stl_short", PointKind::stl, "binary?", "7 bytes: no STL"},
       {"stl_cut", PointKind::stl, test::binary_stl("x", {0, 0, 0, 1, 0, 0, 0, 1, 0}).substr(0, 130),
        "would have 134 bytes and has 130"},
-      {"stl_empty", PointKind::stl, "solid\nendsolid\n", "no points"},
+      {"stl_empty", PointKind::stl, "solid\nendsolid\n", "no triangles: an STL must have one or more"},
+      {"stl_flat", PointKind::stl, test::binary_stl("x", {0, 0, 0, 1, 0, 0, 1, 0, 0}),
+       "no triangles: all 1 have no area or no finite corners"},
       {"stl_word", PointKind::stl, "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 zero 0\n",
        "line 4: \"zero\": must be a number"},
       {"stl_end", PointKind::stl, "solid x\nfacet normal 0 0 1\nouter\n", "the file ends here: must be loop"},
@@ -82,6 +84,8 @@ const std::vector<Case>& cases() {
       {"text_columns", PointKind::text, "1 2 3 4\n", "three or six"},
       {"text_normals", PointKind::text, "1 2 3 0 0 1\n1 2 3\n", "line 2"},
       {"text_none", PointKind::text, "# nothing\n", "no points"},
+      {"text_far", PointKind::text, "1e308 2 3\n", "point 0: coordinate 1e+308 mm: must be within 1e9 mm"},
+      {"text_nan", PointKind::text, "nan nan nan\n", "all 1 have"},
       {"text_huge", PointKind::text, "1 2 1e999\n", "line 1"},
   };
   return kCases;

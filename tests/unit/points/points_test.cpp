@@ -110,6 +110,7 @@ void expect_two_of_three(const PointFile& file) {
   EXPECT_EQ(file.points.points_mm, (std::vector<Point3>{{1, 2, 3}, {4, 5, 6}}));
   EXPECT_EQ(file.points.normals, (std::vector<Point3>{{0, 1, 0}, {0, 0, 0}}));
   EXPECT_EQ(file.dropped_points, 1);
+  EXPECT_EQ(file.first_dropped, "point 1");
 }
 
 struct PcdPoint {
@@ -173,6 +174,20 @@ TEST(PointText, TakesBlanksCommasHeadingsAndNormals) {
   const PointFile file = parsed("\xEF\xBB\xBFx,y,z,nx,ny,nz\n1,2,3,0,0,5\n4;5;6;0;-1;0\n", PointKind::text);
   EXPECT_EQ(file.points.points_mm, (std::vector<Point3>{{1, 2, 3}, {4, 5, 6}}));
   EXPECT_EQ(file.points.normals, (std::vector<Point3>{{0, 0, 1}, {0, -1, 0}}));
+}
+
+TEST(PointText, DropsPointsThatAreNoneAndSaysWhereTheFirstStands) {
+  for (const char* const rows :
+       {"\nnan nan nan\n1 2 3\n4 5 inf\n4 5 6\n", "# a scan\n1 nan 3\n1,2,3\n4,5,6\nnan,0,0\n"}) {
+    const PointFile file = parsed(rows, PointKind::text);
+    EXPECT_EQ(file.points.points_mm, (std::vector<Point3>{{1, 2, 3}, {4, 5, 6}}));
+    EXPECT_EQ(file.dropped_points, 2);
+    EXPECT_EQ(file.first_dropped, "line 2");
+  }
+  const PointFile file = parsed("1 2 3 nan 0 1\n4 5 6 0 1 0\nnan 5 6 0 1 0\n", PointKind::text);
+  EXPECT_EQ(file.points.points_mm, (std::vector<Point3>{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(file.points.normals, (std::vector<Point3>{{0, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(file.first_dropped, "line 3");
 }
 
 TEST(PointFiles, AreKnownByTheirSuffix) {

@@ -66,6 +66,22 @@ struct Case {
   const char* direction;
 };
 
+/// Its scan lies so far along the cylinder that, as the start has it, half of it would hang beyond the end of the CAD.
+TEST(Degenerate, DoesNotKeepAStartThatIsOffTheCad) {
+  GRAVURE_TRACE_DICE();
+  Dice dice(9);
+  const PointSet cad = points_of(Shape::cylinder, 8000, dice);
+  const PointSet scan = without_normals(moved(points_of(Shape::cylinder, 2500, dice), Similarity{}, 0.005, dice));
+  RegistrationOptions options;
+  options.start.translation_mm = {0, 0, 30};
+  const auto result = register_scan({cad, {}}, scan, options);
+  ASSERT_TRUE(result) << result.error().message;
+  const Registration& found = result.value();
+  EXPECT_TRUE(found.degenerate);
+  EXPECT_FALSE(found.kept_as_started);
+  EXPECT_GT(static_cast<double>(found.inliers), 0.9 * 2500);
+}
+
 TEST(Degenerate, NamesTheShapeAndItsFreeDirections) {
   GRAVURE_TRACE_DICE();
   for (const bool estimated : {false, true}) {

@@ -114,8 +114,12 @@ TEST(RefineContours, LeavesAContourWithoutScanWhereTheWholePoseHasIt) {
   EXPECT_LT(placed.back().moved_mm, 1e-3);
   EXPECT_TRUE(refine_contours({cad, {}}, scan, whole, {}, {}).value().empty());
   ContourOptions wrong;
-  wrong.crop_mm = 0;
-  EXPECT_EQ(refine_contours({cad, {}}, scan, whole, contours, wrong).error().code, ErrorCode::bad_argument);
+  wrong.crop_mm = 1e308;
+  EXPECT_EQ(refine_contours({cad, {}}, scan, whole, contours, wrong).error().message,
+            "crop_mm = 1e+308: must be 0.01 to 10000");
+  wrong = {};
+  wrong.bend_mm = 0;
+  EXPECT_EQ(refine_contours({cad, {}}, scan, whole, contours, wrong).error().code, ErrorCode::out_of_range);
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ struct CsvColumns {
   std::size_t count = 2;     ///< at most kMostCsvColumns; a line with more is refused
   /// The heading that the text may have, without blanks: "u_mm,v_mm". Empty: any words.
   std::string_view heading = {};
+  /// Gets a row with a number that is not finite, with its line, in place of `row`. None: such a row is refused.
+  std::function<void(std::size_t line, std::span<const double>)> not_finite = nullptr;
 };
 
 /// Calls `row` with the numbers of each line, separated by comma, semicolon, tab or blanks: no cell may be empty but

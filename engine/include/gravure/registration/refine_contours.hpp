@@ -12,6 +12,8 @@ namespace gravure::registration {
 
 struct ContourOptions {
   bool with_scale = false;
+  static constexpr double kLeastMm = 0.01;  ///< of crop_mm and bend_mm
+  static constexpr double kMostMm = 10'000;
   double crop_mm = 5;            ///< scan points so near a contour say where it lies
   bool bend = false;             ///< also shift each point of a contour out of the surface, as the scan does around it
   double bend_mm = 5;            ///< bending shorter than this is smoothed away

@@ -43,8 +43,9 @@ double six_digits(double value) {
 Result<PointFile> load(const std::string& path) {
   GRAVURE_TRY(PointFile file, read_point_file(path));
   if (file.dropped_points > 0 || file.dropped_triangles > 0) {
-    warn(fmt::format("{}: {} points without finite coordinates and {} triangles without area dropped", path,
-                     file.dropped_points, file.dropped_triangles));
+    warn(fmt::format("{}: {} points without finite coordinates{} and {} triangles without area dropped", path,
+                     file.dropped_points, file.dropped_points > 0 ? " (the first: " + file.first_dropped + ")" : "",
+                     file.dropped_triangles));
   }
   return file;
 }
@@ -282,10 +283,13 @@ void add_register(CLI::App& app, Command& command) {
   verb->add_flag("--scale", options->pose.with_scale, "The scan may be larger or smaller than the CAD");
   verb->add_option("--contours", options->contours, "Contours on the CAD (JSON or CSV)");
   verb->add_option("--contours-out", options->contours_output, "Write them as they lie on the scan, as JSON");
-  add_number(*verb, "--crop-mm", options->around.crop_mm, "Scan points so near a contour say where it lies")
+  const auto around_mm = number_from(registration::ContourOptions::kLeastMm, registration::ContourOptions::kMostMm);
+  verb->add_option("--crop-mm", options->around.crop_mm, "Scan points so near a contour say where it lies")
+      ->check(around_mm)
       ->capture_default_str();
   verb->add_flag("--bend", options->around.bend, "Bend contours out of the surface as the scan is bent");
-  add_number(*verb, "--bend-mm", options->around.bend_mm, "Bending shorter than this is smoothed away")
+  verb->add_option("--bend-mm", options->around.bend_mm, "Bending shorter than this is smoothed away")
+      ->check(around_mm)
       ->capture_default_str();
   verb->add_option("--residuals", options->residuals, "Write each scan point's distance from the CAD as CSV");
   verb->callback(

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "gravure/core/error.hpp"
@@ -22,7 +23,10 @@ struct PointFile {
   PointSet points;                                      ///< those of a mesh are its vertices
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< empty for a cloud; polygons are cut as fans
   std::int64_t dropped_points = 0;     ///< with a coordinate that is no finite number (scanners mark no echo so)
+  std::string first_dropped;           ///< "line 3" of a text, "point 2" of other kinds, counted from 0
   std::int64_t dropped_triangles = 0;  ///< with fewer than 3 different corners, or with a dropped one
+
+  void add_dropped(std::string where) { first_dropped = dropped_points++ == 0 ? std::move(where) : first_dropped; }
 };
 
 /// Reads PLY (ascii, binary of both byte orders), STL (ascii, binary; equal vertices become one), PCD (ascii, binary,
