@@ -4,53 +4,16 @@
 
 #include <flann/flann.hpp>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdlib>
 #include <vector>
 
-#include "blade_surface.hpp"
-#include "gravure/registration/register_scan.hpp"
+#include "registration_case.hpp"
 
 namespace {
 
 using gravure::PointSet;
-using gravure::registration::Similarity;
-using gravure::test::BladeSurface;
-using gravure::test::Dice;
-
-/// 10 um of noise; half a millimetre and 0.6 degrees away.
-Similarity true_pose(double scale) {
-  Similarity pose;
-  pose.rotation = Eigen::AngleAxisd(0.0105, Eigen::Vector3d(1, 2, -1.5).normalized()).toRotationMatrix();
-  pose.translation_mm = {0.3, -0.35, 0.2};
-  pose.scale = scale;
-  return pose;
-}
-
-PointSet scan_of(std::size_t count, double scale, Dice& dice) {
-  const Similarity pose = true_pose(scale);
-  PointSet scan;
-  for (const gravure::Point3& point : BladeSurface::points(count, dice).points_mm) {
-    gravure::Point3 there = pose.point(point);
-    for (double& value : there) {
-      value += 0.01 * BladeSurface::normal(dice);
-    }
-    scan.points_mm.push_back(there);
-  }
-  return scan;
-}
-
-/// Root mean square distance between where two poses put the CAD.
-double pose_error_um(const PointSet& cad, const Similarity& one, const Similarity& other) {
-  double sum = 0;
-  for (const gravure::Point3& point : cad.points_mm) {
-    const gravure::Point3 a = one.point(point);
-    const gravure::Point3 b = other.point(point);
-    sum += std::pow(a[0] - b[0], 2) + std::pow(a[1] - b[1], 2) + std::pow(a[2] - b[2], 2);
-  }
-  return 1e3 * std::sqrt(sum / static_cast<double>(cad.points_mm.size()));
-}
+using namespace gravure::bench;  // NOLINT(google-build-using-namespace)
 
 void register_blade(benchmark::State& state) {
   Dice dice;
