@@ -144,7 +144,10 @@ std::array<std::byte, Seal::kBytes> encode_seal(const Seal& seal) {
 Result<Seal> decode_seal(std::span<const std::byte, Seal::kBytes> bytes, const std::string& path) {
   const bool shard = std::memcmp(bytes.data(), kShardMagic.data(), kShardMagic.size()) == 0;
   if (!shard && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
-    return Error{ErrorCode::bad_file, path + ": is not a gravure program: make one with `gravure compile`"};
+    return Error{
+        ErrorCode::bad_file,
+        path +
+            ": is not a gravure program: make one with `gravure compile`, of a zones job with `gravure zones compile`"};
   }
   if (get_integer(&bytes[kOwnHashAt], 8) != hash_of(bytes.first(kOwnHashAt))) {
     return Error{ErrorCode::bad_file, path + ": the seal (bytes 0..511) is damaged: get a good copy"};

@@ -29,6 +29,8 @@ class SourceSearch {
         source != header_.sources.end() ? locate_source(*source, header_, path_, folder_) : std::string();
     if (place.empty()) {
       evidence_.notes.push_back(name + " not found: points and limits are those that the program stores");
+      evidence_.violations.push_back(
+          name + " was not found, so nothing proves that the program does what its job says: give --images DIR");
       found_all_ = false;
       return place;
     }

@@ -77,7 +77,7 @@ std::string text_of(const PathReport& report) {
                         axis_turns(axis) ? "deg" : "mm", rounded(use.least, 6), rounded(use.most, 6), use.max_speed,
                         use.max_acceleration, use.max_jerk);
   }
-  text += "\n";
+  text += "a figure beyond its limit by 1e-6 of that, for axes by what the rounding of set-points adds, is on it\n\n";
   for (const std::string& note : report.notes) {
     text += "note: " + note + "\n";
   }
