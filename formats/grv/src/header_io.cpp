@@ -17,6 +17,8 @@ namespace gravure::grv {
 namespace {
 
 constexpr const char* kFormat = "gravure program";
+constexpr const char* kSources = "sources";
+constexpr const char* kFiles = "files";
 constexpr const char* kBitsOfLayer = "bits_of_layer";
 constexpr const char* kUnits =
     "time in FPGA ticks (clock_multiplier per seed pulse) or pulse slots; length and frequency as the names say; "
@@ -193,7 +195,10 @@ Result<void> write_root(hid_t file, std::uint32_t format_version) {
 Result<void> write_header(hid_t file, hid_t layers_group, const ProgramHeader& header) {
   GRAVURE_CHECK(write_plan(file, header.plan));
   GRAVURE_CHECK(write_job(file, header));
-  GRAVURE_CHECK(write_sources(file, header.sources));
+  GRAVURE_CHECK(write_sources(file, kSources, header.sources));
+  if (!header.files.empty()) {  // programs of jobs that name none are what they were before there was this table
+    GRAVURE_CHECK(write_sources(file, kFiles, header.files));
+  }
   GRAVURE_CHECK(write_layers(layers_group, header.layers));
   GRAVURE_CHECK(write_shared_bits(layers_group, header.bits_of_layer));
   GRAVURE_CHECK(write_revolutions(file, header));
@@ -211,7 +216,10 @@ Result<ProgramHeader> read_header(hid_t file, const Layout& layout, bool shard, 
                                           std::to_string(format_version_of(header.plan))};
   }
   GRAVURE_CHECK(read_job(file, header));
-  GRAVURE_TRY(header.sources, read_sources(file));
+  GRAVURE_TRY(header.sources, read_sources(file, kSources));
+  if (H5Lexists(file, kFiles, H5P_DEFAULT) > 0) {
+    GRAVURE_TRY(header.files, read_sources(file, kFiles));
+  }
   GRAVURE_TRY(header.bits_of_layer, read_shared_bits(file));
   GRAVURE_TRY(header.layers, read_layers(file, header.bits_of_layer.empty() ? static_cast<std::size_t>(layout.layers)
                                                                             : header.bits_of_layer.size()));

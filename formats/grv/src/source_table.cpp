@@ -66,7 +66,7 @@ Result<void> check_texts(const SourceImage& source) {
 
 }  // namespace
 
-Result<void> write_sources(hid_t file, const std::vector<SourceImage>& sources) {
+Result<void> write_sources(hid_t file, const char* name, const std::vector<SourceImage>& sources) {
   std::size_t longest = 1;
   for (const SourceImage& source : sources) {
     GRAVURE_CHECK(check_texts(source));
@@ -85,25 +85,25 @@ Result<void> write_sources(hid_t file, const std::vector<SourceImage>& sources) 
   }
   const Handle type = row_type(row);
   const std::array<hsize_t, 1> shape = {sources.size()};
-  GRAVURE_TRY(const Handle table, create_table(file, "sources", type.get(), shape));
-  GRAVURE_CHECK(write_values(table.get(), type.get(), rows.data(), "sources"));
+  GRAVURE_TRY(const Handle table, create_table(file, name, type.get(), shape));
+  GRAVURE_CHECK(write_values(table.get(), type.get(), rows.data(), name));
   return write_text_attribute(table.get(), "unit", "page from 0; width and height in pixels; sha256 of the file");
 }
 
-Result<std::vector<SourceImage>> read_sources(hid_t file) {
-  GRAVURE_TRY(const std::uint64_t count, count_rows(file, "sources"));
-  const Handle probe(H5Dopen2(file, "sources", H5P_DEFAULT), H5Dclose);
+Result<std::vector<SourceImage>> read_sources(hid_t file, const char* name) {
+  GRAVURE_TRY(const std::uint64_t count, count_rows(file, name));
+  const Handle probe(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
   const Handle stored(H5Dget_type(probe.get()), H5Tclose);
   const std::size_t bytes = stored.valid() ? H5Tget_size(stored.get()) : 0;
   if (bytes <= Row(0).bytes() || bytes > Row(kMaxPathBytes).bytes()) {
-    return Error{ErrorCode::bad_file, "sources: is no table of sources"};
+    return Error{ErrorCode::bad_file, std::string(name) + ": is no table of sources"};
   }
   const Row row(bytes - Row(0).bytes());
   const Handle type = row_type(row);
   const std::array<hsize_t, 1> shape = {count};
-  GRAVURE_TRY(const Handle table, open_table(file, "sources", type.get(), shape));
+  GRAVURE_TRY(const Handle table, open_table(file, name, type.get(), shape));
   std::string rows(row.bytes() * static_cast<std::size_t>(count), '\0');
-  GRAVURE_CHECK(read_values(table.get(), type.get(), rows.data(), "sources"));
+  GRAVURE_CHECK(read_values(table.get(), type.get(), rows.data(), name));
   std::vector<SourceImage> sources;
   for (const char* at = rows.data(); sources.size() < count; at += row.bytes()) {
     sources.push_back({get_text(at, row.path), get_number(at + row.page_at()), get_number(at + row.width_at()),

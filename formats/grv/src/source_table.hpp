@@ -9,9 +9,9 @@
 
 namespace gravure::grv {
 
-/// /sources: one row an input image, {path, page, width, height, sha256}; the path is as wide as the longest needs.
+/// /sources and /files: one row a file, {path, page, width, height, sha256}; the path is as wide as the longest needs.
 /// Called within an Hdf5Session. bad_argument for a NUL in a text or a hash longer than 64 characters.
-Result<void> write_sources(hid_t file, const std::vector<SourceImage>& sources);
-Result<std::vector<SourceImage>> read_sources(hid_t file);
+Result<void> write_sources(hid_t file, const char* name, const std::vector<SourceImage>& sources);
+Result<std::vector<SourceImage>> read_sources(hid_t file, const char* name);
 
 }  // namespace gravure::grv

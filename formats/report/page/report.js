@@ -90,10 +90,13 @@ gravure.workpiece = () => {
 };
 
 gravure.sourcesTable = () => {
-  const { sources } = gravure.data;
+  const { sources, files } = gravure.data;
   const { element } = gravure;
   const body = element('tbody');
   const most = 200;
+  for (const file of files) {
+    body.append(element('tr', {}, element('td', {}, file.path), element('td', { class: 'number' }, '–'), element('td', { class: 'number' }, '–'), element('td', { class: 'mono hash' }, file.sha256)));
+  }
   for (const source of sources.slice(0, most)) {
     body.append(element('tr', {}, element('td', {}, source.path), element('td', { class: 'number' }, String(source.page)), element('td', { class: 'number' }, `${source.width} × ${source.height}`), element('td', { class: 'mono hash' }, source.sha256)));
   }

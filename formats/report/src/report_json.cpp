@@ -242,6 +242,10 @@ Result<std::string> report_json(const report::ReportData& data) {
                        {"height", source.height},
                        {"sha256", source.sha256}});
   }
+  Json files = Json::array();
+  for (const SourceImage& file : data.header->files) {
+    files.push_back({{"path", file.path}, {"sha256", file.sha256}});
+  }
   GRAVURE_TRY(Json layers, layers_json(data));
   Json json = report_head(data);
   json["verdict"].update({{"images_compared", verified.images_compared},
@@ -255,7 +259,8 @@ Result<std::string> report_json(const report::ReportData& data) {
                {"line", line_json(data.line)},
                {"pictures", std::move(layers)},
                {"relief", relief_json(data)},
-               {"sources", sources}});
+               {"sources", sources},
+               {"files", files}});
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -8,6 +8,17 @@ namespace {
 
 using namespace grv_test;
 
+void expect_same_files(const std::vector<SourceImage>& found, const std::vector<SourceImage>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(found[i].path, expected[i].path);
+    EXPECT_EQ(found[i].page, expected[i].page);
+    EXPECT_EQ(found[i].width, expected[i].width);
+    EXPECT_EQ(found[i].height, expected[i].height);
+    EXPECT_EQ(found[i].sha256, expected[i].sha256);
+  }
+}
+
 void expect_same_header(const ProgramHeader& found, const ProgramHeader& expected) {
   EXPECT_EQ(plan_to_json(found.plan), plan_to_json(expected.plan));
   EXPECT_EQ(found.format_version, expected.format_version);
@@ -16,14 +27,8 @@ void expect_same_header(const ProgramHeader& found, const ProgramHeader& expecte
   EXPECT_EQ(found.fires, expected.fires);
   EXPECT_EQ(found.lines_along, expected.lines_along);
   EXPECT_EQ(found.layer_of_revolution, expected.layer_of_revolution);
-  ASSERT_EQ(found.sources.size(), expected.sources.size());
-  for (std::size_t i = 0; i < expected.sources.size(); ++i) {
-    EXPECT_EQ(found.sources[i].path, expected.sources[i].path);
-    EXPECT_EQ(found.sources[i].page, expected.sources[i].page);
-    EXPECT_EQ(found.sources[i].width, expected.sources[i].width);
-    EXPECT_EQ(found.sources[i].height, expected.sources[i].height);
-    EXPECT_EQ(found.sources[i].sha256, expected.sources[i].sha256);
-  }
+  expect_same_files(found.sources, expected.sources);
+  expect_same_files(found.files, expected.files);
   ASSERT_EQ(found.layers.size(), expected.layers.size());
   for (std::size_t i = 0; i < expected.layers.size(); ++i) {
     EXPECT_EQ(found.layers[i].starts_reverse, expected.layers[i].starts_reverse);
@@ -86,6 +91,15 @@ TEST(Grv, GivesBackEmptyTextsAndNoSources) {
   Program program = make_program(9, 4, {Picture::noise});
   program.header.job_text.clear();
   program.header.job_path.clear();
+  program.header.sources.clear();
+  expect_round_trip(program, {});
+}
+
+TEST(Grv, GivesBackTheFilesThatTheJobNamesBesideItsImages) {
+  Program program = make_program(9, 4, {Picture::noise});
+  program.header.files = {{"field.grid", 0, 0, 0, std::string(64, 'a')},
+                          {"../machines/of another folder.toml", 0, 0, 0, std::string(64, 'b')}};
+  expect_round_trip(program, {});
   program.header.sources.clear();
   expect_round_trip(program, {});
 }

@@ -100,6 +100,9 @@ struct ProgramHeader {
   Fires fires = Fires::white;
   LinesAlong lines_along = LinesAlong::rows;
   std::vector<SourceImage> sources;
+  /// What the job names beside its images: field grid, machine file (page and pixels 0). Path programs have all of
+  /// their files in `sources`; none: the job names none, or the program is older than this.
+  std::vector<SourceImage> files;
   std::vector<StoredLayer> layers;
   std::vector<std::uint32_t> layer_of_revolution;
   /// Where layers show the same picture, its bits are kept once: which stored bits are those of each layer, numbered as

@@ -40,6 +40,10 @@ Result<LoadedJob> load_job(const std::string& path, const ImageOpener& opener, b
   GRAVURE_TRY(loaded.job, read_job(path));
   GRAVURE_TRY(const std::optional<kinematics::Machine> machine, read_machine_of(loaded.job));
   GRAVURE_CHECK(read_scanner_files(loaded.job));
+  for (const std::string& name : named_files(loaded.job)) {
+    GRAVURE_TRY(const std::string hash, sha256_file((fs::path(path).parent_path() / name).string()));
+    loaded.files.push_back({name, 0, 0, 0, hash});
+  }
   const ImageSettings& image = loaded.job.image;
   if (names_images(image)) {
     // A job that says its pixels can be planned before its images are there; images that are there must be good.
@@ -207,6 +211,7 @@ Compilation prepare_compilation(const LoadedJob& loaded, const CompileRequest& r
   header.job_path = relative_to(loaded.job.path, fs::path(request.output).parent_path());
   header.fires = loaded.job.image.fires;
   header.lines_along = loaded.job.image.lines_along;
+  header.files = loaded.files;
   if (loaded.trajectory) {
     header.set_points = loaded.trajectory->stored_set_points();
   }

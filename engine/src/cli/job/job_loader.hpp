@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "gravure/core/exposure_map.hpp"
 #include "gravure/core/job.hpp"
@@ -23,6 +24,7 @@ namespace gravure::cli {
 struct LoadedJob {
   Job job;
   std::optional<ImageStack> images;
+  std::vector<SourceImage> files;                 ///< that the job names beside its images (ProgramHeader::files)
   std::int64_t columns = 0;                       ///< pixels of an image line
   Plan plan;                                      ///< its warnings hold those of the images and the scanner, too
   std::optional<scan::JobTrajectory> trajectory;  ///< none without a scanner

@@ -55,6 +55,10 @@ Json json_of(const ProgramHeader& header) {
                        {"height", source.height},
                        {"sha256", source.sha256}});
   }
+  Json files = Json::array();
+  for (const SourceImage& file : header.files) {
+    files.push_back({{"path", file.path}, {"sha256", file.sha256}});
+  }
   Json layers = Json::array();
   const std::vector<ShownLayer> shown = shown_layers(header);
   for (std::size_t layer = 0; layer < shown.size(); ++layer) {
@@ -89,6 +93,7 @@ Json json_of(const ProgramHeader& header) {
                     {"plan", Json::parse(plan_to_json(header.plan))},
                     {"set_points", set_points},
                     {"sources", sources},
+                    {"files", files},
                     {"layers", layers},
                     {"layer_of_revolution", layer_of_revolution},
                     {"stored", stored},
@@ -106,6 +111,9 @@ std::string text_of(const ProgramHeader& header, const std::string& path) {
   if (!header.set_points.empty()) {
     text += fmt::format("scanner   {} set-points a line, for {} kinds of lines\n", header.set_points[0].u_counts.size(),
                         header.set_points.size());
+  }
+  for (const SourceImage& file : header.plan.path ? header.sources : header.files) {
+    text += fmt::format("file      {}, SHA-256 {}\n", file.path, file.sha256);
   }
   if (header.plan.path) {
     return text + fmt::format("pulses    {} fire\n", header.layers.empty() ? 0 : header.layers[0].fired_pixels);

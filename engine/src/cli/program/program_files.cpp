@@ -92,13 +92,20 @@ Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std:
   return {};
 }
 
-std::vector<std::string> files_of(const Job& job) {
-  std::vector<std::string> files = {job.path};
-  const fs::path folder = fs::path(job.path).parent_path();
+std::vector<std::string> named_files(const Job& job) {
+  std::vector<std::string> names;
   for (const std::optional<std::string>& file : {job.scanner.field_grid, job.machine.file}) {
     if (file) {
-      files.push_back((folder / *file).string());
+      names.push_back(*file);
     }
+  }
+  return names;
+}
+
+std::vector<std::string> files_of(const Job& job) {
+  std::vector<std::string> files = {job.path};
+  for (const std::string& name : named_files(job)) {
+    files.push_back((fs::path(job.path).parent_path() / name).string());
   }
   return files;
 }

@@ -57,7 +57,9 @@ struct OutputFile {
 /// to the same folder, or a link.
 Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs);
 
-/// A job file and what it names beside its pictures: field grid and machine file.
+/// What a job names beside its pictures, as it names it: field grid and machine file.
+std::vector<std::string> named_files(const Job& job);
+/// A job file and what it names beside its pictures, each where it lies.
 std::vector<std::string> files_of(const Job& job);
 /// A program and what it was made from, as far as it tells: no output may take the place of one of them.
 std::vector<std::string> inputs_of_program(const std::string& path);

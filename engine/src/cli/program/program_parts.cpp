@@ -18,6 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool same_sources(const std::vector<SourceImage>& a, const std::vector<SourceImage>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SourceImage& one, const SourceImage& other) {
+    return one.path == other.path && one.page == other.page && one.width == other.width && one.height == other.height &&
+           one.sha256 == other.sha256;
+  });
+}
+
 /// What two shards of one job have in common: the first thing that they have not, or nothing.
 std::string difference(const ProgramHeader& a, const ProgramHeader& b) {
   const auto same_points = [](const LineSetPoints& one, const LineSetPoints& other) {
@@ -25,6 +32,9 @@ std::string difference(const ProgramHeader& a, const ProgramHeader& b) {
   };
   if (a.job_text != b.job_text) {
     return "the text of their job files";
+  }
+  if (!same_sources(a.files, b.files)) {
+    return "the files that their job names (field grid, machine file)";
   }
   if (plan_to_json(a.plan) != plan_to_json(b.plan)) {
     return "their plans (another version of a file that the job names, or of gravure)";
@@ -40,13 +50,6 @@ std::string difference(const ProgramHeader& a, const ProgramHeader& b) {
                        b.shard->image_layers);
   }
   return {};
-}
-
-bool same_sources(const std::vector<SourceImage>& a, const std::vector<SourceImage>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SourceImage& one, const SourceImage& other) {
-    return one.path == other.path && one.page == other.page && one.width == other.width && one.height == other.height &&
-           one.sha256 == other.sha256;
-  });
 }
 
 bool same_layers(const std::vector<StoredLayer>& a, const std::vector<StoredLayer>& b) {
