@@ -43,4 +43,19 @@ Result<void> TextOutput::commit() {
   return output_.commit();
 }
 
+Result<void> commit_together(std::vector<TextOutput> files) {
+  for (TextOutput& file : files) {
+    if (!file.flush(true) || std::fflush(file.file_.get()) != 0) {
+      return Error{ErrorCode::io, file.output_.path() + ": cannot be written: is the disk full?"};
+    }
+  }
+  if (cancel_token().cancelled()) {
+    return Error{ErrorCode::cancelled, "stopped; nothing was written"};
+  }
+  for (TextOutput& file : files) {
+    GRAVURE_CHECK(file.commit());
+  }
+  return {};
+}
+
 }  // namespace gravure::cli

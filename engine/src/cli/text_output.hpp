@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "gravure/core/error.hpp"
 #include "gravure/core/file_output.hpp"
@@ -21,6 +22,7 @@ class TextOutput {
   Result<void> commit();
 
  private:
+  friend Result<void> commit_together(std::vector<TextOutput> files);
   struct Close {
     void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
   };
@@ -30,5 +32,9 @@ class TextOutput {
   std::string text_;
   bool good_ = true;
 };
+
+/// Puts files that were written in their places: all of them, or none where one cannot be written to its end or the
+/// user has stopped before. From the first on Ctrl-C changes nothing any more.
+Result<void> commit_together(std::vector<TextOutput> files);
 
 }  // namespace gravure::cli

@@ -8,6 +8,7 @@
 #include "gravure/core/plan.hpp"
 #include "gravure/formats/waves_dump.hpp"
 #include "gravure/fpga/ab_edges.hpp"
+#include "text_output.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -40,11 +41,9 @@ Result<TickWindow> tick_window(const EmulateOptions& options, std::uint64_t end)
 /// Nanoseconds where the clock is known, else one unit a tick.
 Result<formats::VcdTime> vcd_time(std::int64_t fpga_hz);
 
-/// Writes the edges of a window as CSV; gives their number.
-Result<std::uint64_t> write_csv_edges(const std::string& path, const fpga::AbRegisters& registers, TickWindow window);
-
-/// The same of a program: every run begins with the counter at 0, and backward runs have the pins exchanged.
-Result<std::uint64_t> write_run_edges(const std::string& path, const Plan& plan, TickWindow window);
+/// The edges of a window of a program as CSV, written but not in its place: every run begins with the counter at 0, and
+/// backward runs have the pins exchanged.
+Result<TextOutput> write_run_edges(const std::string& path, const Plan& plan, TickWindow window);
 
 /// Counter and pins after a tick, exactly.
 Json axis_json(const fpga::AbRegisters& registers, std::uint64_t tick);

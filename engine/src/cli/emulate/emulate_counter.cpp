@@ -62,7 +62,23 @@ Result<std::uint64_t> write_each(const fpga::AbRegisters& registers, TickWindow 
   return edges;
 }
 
-Result<std::uint64_t> write_vcd_edges(const EmulateOptions& options, TickWindow window) {
+/// A file that is written but not in its place, and the edges in it.
+struct WrittenEdges {
+  TextOutput output;
+  std::uint64_t edges = 0;
+};
+
+Result<WrittenEdges> write_csv_edges(const EmulateOptions& options, TickWindow window) {
+  GRAVURE_TRY(TextOutput output, TextOutput::create(options.edges_path));
+  formats::append_csv_header(output.text());
+  GRAVURE_TRY(const std::uint64_t edges, write_each(options.registers, window, output, [&](const fpga::AbEdge& edge) {
+                formats::append_csv_edge(output.text(), edge);
+                return Result<void>();
+              }));
+  return WrittenEdges{std::move(output), edges};
+}
+
+Result<WrittenEdges> write_vcd_edges(const EmulateOptions& options, TickWindow window) {
   GRAVURE_TRY(const formats::VcdTime time, vcd_time(options.fpga_hz));
   GRAVURE_TRY(formats::VcdWriter waves, formats::VcdWriter::make(time));
   GRAVURE_TRY(TextOutput output, TextOutput::create(options.vcd_path));
@@ -72,8 +88,7 @@ Result<std::uint64_t> write_vcd_edges(const EmulateOptions& options, TickWindow 
                 return waves.edge(output.text(), edge);
               }));
   GRAVURE_CHECK(waves.end(output.text(), window.last));
-  GRAVURE_CHECK(output.commit());
-  return edges;
+  return WrittenEdges{std::move(output), edges};
 }
 
 }  // namespace
@@ -103,37 +118,23 @@ Result<formats::VcdTime> vcd_time(std::int64_t fpga_hz) {
   return formats::VcdTime{"1 fs", num, den};
 }
 
-Result<std::uint64_t> write_csv_edges(const std::string& path, const fpga::AbRegisters& registers, TickWindow window) {
-  GRAVURE_TRY(TextOutput output, TextOutput::create(path));
-  formats::append_csv_header(output.text());
-  GRAVURE_TRY(const std::uint64_t edges, write_each(registers, window, output, [&](const fpga::AbEdge& edge) {
-                formats::append_csv_edge(output.text(), edge);
-                return Result<void>();
-              }));
-  GRAVURE_CHECK(output.commit());
-  return edges;
-}
-
-Result<std::uint64_t> write_run_edges(const std::string& path, const Plan& plan, TickWindow window) {
+Result<TextOutput> write_run_edges(const std::string& path, const Plan& plan, TickWindow window) {
   const fpga::AbRegisters registers{plan.ab.counter_bits, plan.ab.prescaler, plan.ab.increment, plan.ab.fraction_num,
                                     plan.ab.fraction_den};
   GRAVURE_TRY(TextOutput output, TextOutput::create(path));
   formats::append_csv_header(output.text());
-  std::uint64_t edges = 0;
   const auto run_ticks = static_cast<std::uint64_t>(run_with(plan, 0).ticks);
   for (std::uint64_t begin = window.first / run_ticks * run_ticks; begin < window.last; begin += run_ticks) {
     const std::int64_t revolution = static_cast<std::int64_t>(begin) / plan.rotary.ticks_per_revolution;
     const bool backward = run_with(plan, revolution).backward;
     const TickWindow part{std::max(window.first, begin) - begin, std::min(window.last - begin, run_ticks)};
-    GRAVURE_TRY(const std::uint64_t more, write_each(registers, part, output, [&](const fpga::AbEdge& edge) {
-                  const fpga::AbPins pins = backward ? fpga::AbPins{edge.pins.b, edge.pins.a} : edge.pins;
-                  formats::append_csv_edge(output.text(), {edge.clock + begin, pins});
-                  return Result<void>();
-                }));
-    edges += more;
+    GRAVURE_CHECK(write_each(registers, part, output, [&](const fpga::AbEdge& edge) {
+      const fpga::AbPins pins = backward ? fpga::AbPins{edge.pins.b, edge.pins.a} : edge.pins;
+      formats::append_csv_edge(output.text(), {edge.clock + begin, pins});
+      return Result<void>();
+    }));
   }
-  GRAVURE_CHECK(output.commit());
-  return edges;
+  return output;
 }
 
 Json axis_json(const fpga::AbRegisters& registers, std::uint64_t tick) {
@@ -154,25 +155,28 @@ Result<int> run_counter(const EmulateOptions& options, const Command& command) {
   GRAVURE_CHECK(refuse_overwrite({{"--edges", options.edges_path}, {"--vcd", options.vcd_path}}, {}));
   const std::uint64_t closed_form = fpga::position_after(options.registers, window.last).edges -
                                     fpga::position_after(options.registers, window.first).edges;
-  const auto check = [&](std::uint64_t written) {  // two ways to the same number
-    return written == closed_form ? Result<void>()
-                                  : Error{ErrorCode::device, fmt::format("the event model gave {} edges, the closed "
-                                                                         "form {}",
-                                                                         written, closed_form)};
+  std::vector<TextOutput> files;
+  const auto keep = [&](Result<WrittenEdges> made) -> Result<void> {
+    GRAVURE_TRY(WrittenEdges written, std::move(made));
+    if (written.edges != closed_form) {  // two ways to the same number
+      return Error{ErrorCode::device,
+                   fmt::format("the event model gave {} edges, the closed form {}", written.edges, closed_form)};
+    }
+    files.push_back(std::move(written.output));
+    return {};
   };
   if (!options.vcd_path.empty()) {
-    GRAVURE_TRY(const std::uint64_t written, write_vcd_edges(options, window));
-    GRAVURE_CHECK(check(written));
+    GRAVURE_CHECK(keep(write_vcd_edges(options, window)));
   }
   if (!options.edges_path.empty()) {
-    GRAVURE_TRY(const std::uint64_t written, write_csv_edges(options.edges_path, options.registers, window));
-    GRAVURE_CHECK(check(written));
+    GRAVURE_CHECK(keep(write_csv_edges(options, window)));
   }
   const fpga::AbPosition end = fpga::position_after(options.registers, options.clocks);
   Json rtl;
   if (options.rtl) {
     GRAVURE_TRY(rtl, counter_on_rtl(options));
   }
+  GRAVURE_CHECK(commit_together(std::move(files)));
   if (command.json) {
     Json result = {{"clocks", json_integer(Integer(options.clocks))},
                    {"edges", json_integer(Integer(end.edges))},

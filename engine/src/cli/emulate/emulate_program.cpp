@@ -54,10 +54,11 @@ class WaveFile final : public emulator::WaveSink {
     return keep(dump_.change(output_.text(), tick, static_cast<std::size_t>(signal), value));
   }
   const Result<void>& written() const { return written_; }
-  Result<void> commit(std::uint64_t last) {
+  /// The file, written but not in its place.
+  Result<TextOutput> end(std::uint64_t last) {
     GRAVURE_CHECK(written_);
     GRAVURE_CHECK(dump_.end(output_.text(), last));
-    return output_.commit();
+    return std::move(output_);
   }
 
  private:
@@ -488,15 +489,18 @@ Result<int> run_program(const EmulateOptions& options, const Command& command) {
     return true;
   };
   GRAVURE_CHECK(send_lines(*program, run.lines, host, start));
+  std::vector<TextOutput> files;
   if (file) {
     waves->finish();
     if (cancel_token().cancelled()) {
       return Error{ErrorCode::cancelled, "stopped; nothing was written"};
     }
-    GRAVURE_CHECK(file->commit(run.window.last));
+    GRAVURE_TRY(TextOutput vcd, file->end(run.window.last));
+    files.push_back(std::move(vcd));
   }
   if (!options.edges_path.empty()) {
-    GRAVURE_TRY([[maybe_unused]] const std::uint64_t edges, write_run_edges(options.edges_path, plan, run.window));
+    GRAVURE_TRY(TextOutput edges, write_run_edges(options.edges_path, plan, run.window));
+    files.push_back(std::move(edges));
   }
   run.status = host.status();
   end_run();
@@ -505,6 +509,7 @@ Result<int> run_program(const EmulateOptions& options, const Command& command) {
   if (options.rtl) {
     GRAVURE_TRY(run.rtl, lines_on_rtl(*program, run.lines, setup, run.fired));
   }
+  GRAVURE_CHECK(commit_together(std::move(files)));
   print_run(options, command, plan, run);
   return run.dark.empty() && run.status.tick == (run.lines.last + 1) * plan.line.ticks ? kDone : kLimitViolated;
 }

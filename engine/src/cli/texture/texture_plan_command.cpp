@@ -63,11 +63,13 @@ Result<int> plan(TexturePlanArguments options, const Command& command) {
   GRAVURE_TRY(std::optional<TextOutput> points, stage_points(options.points, outcome.seven.timed.split,
                                                              outcome.seven.timed.axes, options.job.split.focus_axis));
   GRAVURE_TRY(std::optional<TextOutput> trajectory, stage_trajectory(options, *outcome.seven.proven.path.motion));
+  std::vector<TextOutput> files;
   for (std::optional<TextOutput>* const output : {&points, &trajectory}) {
     if (*output) {
-      GRAVURE_CHECK((*output)->commit());
+      files.push_back(std::move(**output));
     }
   }
+  GRAVURE_CHECK(commit_together(std::move(files)));
   command.json ? print_json(outcome_json(options.job, outcome)) : print(outcome_text(options.job, outcome));
   return outcome.violations.empty() ? kDone : kLimitViolated;
 }

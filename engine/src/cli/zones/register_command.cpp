@@ -265,9 +265,7 @@ Result<int> run_register(const RegisterOptions& options, bool json) {
   if (!options.output.empty()) {
     GRAVURE_CHECK(stage(options.output, document.dump(2) + "\n"));
   }
-  for (TextOutput& file : files) {
-    GRAVURE_CHECK(file.commit());
-  }
+  GRAVURE_CHECK(commit_together(std::move(files)));
   json ? print_json(document) : print(text);
   return is_sure(found) ? kDone : kLimitViolated;
 }
