@@ -107,6 +107,9 @@ Result<Beginning> where_to_begin(const Journal& journal, const BoardMemory& boar
 }
 
 std::string line_text(const Plan& plan, std::int64_t line) {
+  if (plan.path) {
+    return fmt::format("servo period {}", line);
+  }
   const std::int64_t lines = plan.rotary.lines_per_revolution;
   return fmt::format("{} {}, line {}", plan.mode == Mode::flat ? "pass" : "revolution", line / lines, line % lines);
 }

@@ -273,6 +273,12 @@ class Run {
   }
 
   void say_offset(std::int64_t line) {
+    if (plan_.path) {
+      note("resume", fmt::format("going on at {} ({}): the stages and the galvo begin their motion at its start again, "
+                                 "and the gate stays closed until that period",
+                                 line_text(plan_, line), report_.begun.why));
+      return;
+    }
     std::string text = fmt::format(
         "going on at {} ({}): the axis is at its reference again and comes to that line; its drift until there, {:.6f} "
         "um, is not made up for",
