@@ -119,7 +119,7 @@ Result<int> run_freeform(const CompileArguments& options, const Command& command
   GRAVURE_TRY(const FreeformJob job, read_freeform_job(options.job));
   std::vector<std::string> inputs = inputs_of(job.texture);
   inputs.push_back(options.job);
-  GRAVURE_CHECK(refuse_overwrite(options.output, inputs));
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs, Writes::program));
   return compile_freeform_job(job, {options.output, "", grv_options(options.compression)},
                               with_texture_memory(command));
 }
@@ -134,7 +134,7 @@ Result<int> run_compile(const CompileArguments& options, const Command& command)
   for (const StackImage& image : loaded.images->images) {
     inputs.push_back(image.path);
   }
-  GRAVURE_CHECK(refuse_overwrite(options.output, inputs));
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs, Writes::program));
   GRAVURE_TRY(const std::optional<Shard> shard, shard_of(options, loaded));
   const CompileRequest request{options.output, grv_options(options.compression), shard, options.resume};
   GRAVURE_TRY(const CompileOutcome outcome, compile_job(loaded, files, request, command));

@@ -18,7 +18,7 @@ struct MergeArguments {
 };
 
 Result<int> run_merge(const MergeArguments& options, const Command& command) {
-  GRAVURE_CHECK(refuse_overwrite(options.output, options.shards));
+  GRAVURE_CHECK(refuse_overwrite(options.output, options.shards, Writes::program));
   GRAVURE_TRY(const ProgramHeader header, merge_shards(options.shards, options.output));
   if (command.json) {
     print_json({{"program", options.output},

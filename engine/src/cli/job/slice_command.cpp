@@ -124,7 +124,7 @@ Result<int> run_slice(const SliceArguments& options, const Command& command) {
     return Error{ErrorCode::io, options.folder + ": cannot make the folder: " + failed.message()};
   }
   for (std::int64_t level = 0; level < options.levels; ++level) {
-    GRAVURE_CHECK(refuse_overwrite(layer_path(options, level), {options.map}));
+    GRAVURE_CHECK(refuse_overwrite(layer_path(options, level), {options.map}, Writes::picture));
   }
   std::vector<std::int64_t> fired(static_cast<std::size_t>(options.levels));
   constexpr std::int64_t kOpenAtOnce = 64;  // files; the map is read once for each such group

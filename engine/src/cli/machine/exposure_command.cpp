@@ -123,8 +123,8 @@ Result<int> run_exposure(ExposureArguments options, const Command& command) {
                      "they land, gravure verify judges each"};
   }
   GRAVURE_TRY(ExposureCount count, ExposureCount::make(header, options.revolution, options.layer));
-  GRAVURE_CHECK(refuse_overwrite(options.output, emulator::state_files(options.folder)));
-  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program)));
+  GRAVURE_CHECK(refuse_overwrite(options.output, emulator::state_files(options.folder), Writes::picture));
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program), Writes::picture));
   static_cast<void>(cancel_token());  // before there is a temporary file: from here on Ctrl-C takes it away again
   GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(options.output, page_of(header)));
   GRAVURE_TRY(const Times times, render(options, count, writer, command.memory_bytes()));

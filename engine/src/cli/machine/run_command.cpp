@@ -183,7 +183,8 @@ void print_report(const RunArguments& options, const Plan& plan, const DeviceIde
 Result<int> run_program(const RunArguments& options, const Command& command) {
   const CancelToken& cancel = cancel_token();
   const std::string journal_path = options.journal.empty() ? options.program + ".journal" : options.journal;
-  GRAVURE_CHECK(refuse_overwrite({{"--journal", journal_path}}, inputs_of_program(options.program)));
+  GRAVURE_CHECK(refuse_overwrite({{"--journal", journal_path, Writes::journal}, {"--record", options.record}},
+                                 inputs_of_program(options.program)));
   if (std::error_code ignored; options.run.resume.resume && !std::filesystem::exists(journal_path, ignored)) {
     return Error{ErrorCode::bad_argument,
                  fmt::format("--resume: there is no journal {}, so nothing was begun: leave out --resume, or give the "

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <fstream>
 
 #include "gravure/emulator/emulated_device.hpp"
 #include "gravure/formats/image_files.hpp"
+#include "gravure/formats/image_kind.hpp"
 #include "gravure/formats/job_file.hpp"
 #include "job/job_loader.hpp"
 
@@ -43,6 +46,50 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return !place.empty() && place == fs::weakly_canonical(fs::absolute(b, ignored), ignored);
 }
 
+/// The first bytes of a file, as many as there are up to `count`.
+std::string first_bytes(const std::string& path, std::size_t count) {
+  std::string bytes(count, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+/// Byte 25 of a PNG is its colour type: `preview` writes 2, and what is a layer or a depth map has another.
+bool is_preview(const std::string& path) {
+  const std::string start = first_bytes(path, 26);
+  return start.size() == 26 && start[25] == 2;
+}
+
+/// What lies at `output` and costs work to have again, in words; empty where nothing does, or where it is what is
+/// written there. Names decide where the content is text, the content where it is not.
+std::string lost_by(const std::string& output, Writes writes) {
+  if (writes == Writes::journal || !is_file(output)) {
+    return {};
+  }
+  std::string ending = fs::path(output).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  if (ending == ".toml") {
+    return "a TOML file (a job, a machine)";
+  }
+  for (const char* const mesh : {".stl", ".ply", ".pcd"}) {
+    if (ending == mesh) {
+      return "a mesh or scan";
+    }
+  }
+  const std::string start = first_bytes(output, 16);
+  if (start.rfind("gravure program", 0) == 0 || start.rfind("gravure shard", 0) == 0) {
+    return writes == Writes::program ? "" : "a program of gravure";
+  }
+  const Result<ImageKind> kind = image_kind(output);
+  if (!kind || (writes == Writes::picture && kind.value() == ImageKind::tiff) ||
+      (writes == Writes::preview && kind.value() == ImageKind::png && is_preview(output))) {
+    return {};
+  }
+  return fmt::format("an image ({})", image_kind_name(kind.value()));
+}
+
 }  // namespace
 
 DeviceFactory emulated_devices() {
@@ -65,12 +112,18 @@ std::string relative_to(const std::string& path, const fs::path& folder) {
   return failed ? path : near.generic_string();
 }
 
-Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs) {
+Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs, Writes writes) {
   for (const std::string& input : inputs) {
     if (same_file(output, input)) {
       return Error{ErrorCode::bad_argument,
                    fmt::format("output {} is the input {}: give another file name", output, input)};
     }
+  }
+  if (const std::string lost = lost_by(output, writes); !lost.empty()) {
+    return Error{ErrorCode::bad_argument,
+                 fmt::format("output {} is there already and is {}, which would be lost: give another file name, or "
+                             "move that file away first",
+                             output, lost)};
   }
   return {};
 }
@@ -80,7 +133,7 @@ Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std:
     if (output->path.empty()) {
       continue;
     }
-    GRAVURE_CHECK(refuse_overwrite(output->path, inputs));
+    GRAVURE_CHECK(refuse_overwrite(output->path, inputs, output->writes));
     const auto other = std::find_if(outputs.begin(), output, [&output](const OutputFile& before) {
       return !before.path.empty() && same_file(before.path, output->path);
     });

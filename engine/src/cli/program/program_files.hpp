@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -45,16 +46,28 @@ LayerOrigin origin_of(const ProgramHeader& header, std::int64_t layer);
 /// `path` as seen from `folder` where that is possible, so that a job, its files and its program can move together.
 std::string relative_to(const std::string& path, const std::filesystem::path& folder);
 
-/// Fails with bad_argument where `output` is one of the files that are being read.
-Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs);
+/// What a verb writes: earlier outputs of the same kind may be written anew.
+enum class Writes : std::uint8_t {
+  text,     ///< tables, pages, figures, recordings
+  program,  ///< or a shard of one
+  picture,  ///< bilevel TIFF
+  preview,  ///< PNG in colour, which no job takes for a layer
+  journal,  ///< judged by whoever opens it: a run goes on in it
+};
+
+/// Fails with bad_argument where `output` is one of the files that are being read, or where a file of another kind lies
+/// that a person has made or waited for: a job or machine file (TOML), a program, an image, a mesh or scan.
+Result<void> refuse_overwrite(const std::string& output, const std::vector<std::string>& inputs,
+                              Writes writes = Writes::text);
 
 /// A file to write, with the option that names it; an empty path asks for none.
 struct OutputFile {
   std::string_view option;
   std::string path;
+  Writes writes = Writes::text;
 };
-/// Fails with bad_argument where one of `outputs` is one of `inputs`, or two of them are one file: by path, another way
-/// to the same folder, or a link.
+/// The same of each of `outputs`; also where two of them are one file: by path, another way to the same folder, or a
+/// link.
 Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs);
 
 /// What a job names beside its pictures, as it names it: field grid and machine file.

@@ -78,7 +78,7 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const UnrollArgumen
   page.compression = options.compression == "source" ? TiffCompression::deflate : compression_of(options.compression);
   page.x_dots_per_mm = rows ? along : across;
   page.y_dots_per_mm = rows ? across : along;
-  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program)));
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program), Writes::picture));
   if (source == nullptr) {
     return page;  // where that is wrong, unroll() says so
   }

@@ -171,17 +171,18 @@ Result<void> refuse_html(const std::string& path, const VerifyArguments& options
 /// `--html`: written whatever the verdict.
 Result<void> write_page(const std::string& path, VerifiedProgram verified, const VerifyArguments& options,
                         const Command& command) {
-  GRAVURE_CHECK(refuse_html(path, options));
   GRAVURE_CHECK(write_report(page_request(path, options), std::move(verified), command));
   return {};
 }
 
 Result<int> verify_program(const std::string& path, const VerifyArguments& options, const Command& command) {
+  if (!options.html.empty()) {
+    GRAVURE_CHECK(refuse_html(path, options));  // before minutes of emulation
+  }
   {
     GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
     if (program->header().plan.path) {
       if (!options.html.empty()) {
-        GRAVURE_CHECK(refuse_html(path, options));
         GRAVURE_TRY(const WrittenPathReport written,
                     write_path_report(page_request(path, options), *program, options.images));
         return print_path_report(written.verified, command);

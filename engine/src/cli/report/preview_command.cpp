@@ -54,7 +54,7 @@ Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const
 }
 
 Result<int> run_preview(const PreviewArguments& options, const Command& command) {
-  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program)));
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program), Writes::preview));
   GRAVURE_CHECK(check_png_name(options.output));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();

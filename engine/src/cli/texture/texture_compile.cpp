@@ -19,8 +19,8 @@ struct TextureCompileArguments {
 };
 
 Result<int> run_texture_compile(TextureCompileArguments options, const Command& command) {
-  GRAVURE_CHECK(
-      refuse_overwrite({{"--output", options.output}, {"--points", options.points}}, inputs_of(options.job.texture)));
+  GRAVURE_CHECK(refuse_overwrite({{"--output", options.output, Writes::program}, {"--points", options.points}},
+                                 inputs_of(options.job.texture)));
   GRAVURE_CHECK(set_limits(options.limits, options.job.motion));
   return compile_freeform_job(options.job, {options.output, options.points, {}}, command);
 }

@@ -169,7 +169,7 @@ void warn_of_contours(const std::vector<Contour>& contours, double pitch_mm) {
 Result<int> compile_zones(const CompileOptions& options, const Command& command) {
   GRAVURE_TRY(const LoadedZonesJob loaded, load_zones_job(options.job));
   const ZonesFiles& files = loaded.files;
-  GRAVURE_CHECK(refuse_overwrite({{"--output", options.output}, {"--plot", options.plot}},
+  GRAVURE_CHECK(refuse_overwrite({{"--output", options.output, Writes::program}, {"--plot", options.plot}},
                                  {options.job, files.contours, files.transform, files.machine}));
   GRAVURE_TRY(const ZonesProgram laid, lay_out_zones(loaded));
   GRAVURE_TRY(std::optional<TextOutput> plot, draw(options, loaded, laid));
