@@ -159,6 +159,15 @@ async function pathPage(context, shot) {
   await page.selectOption('#map-what', 'heights');
   check('the surface is shown instead', (await picture(page, '#map-canvas')) !== pulses);
   check('seven axes are drawn over time', (await page.locator('#traces path.band').count()) === 7 && (await page.locator('#axis-table tbody tr').count()) === 7);
+  check('the pulses stand on the workpiece', (await colours(page, '#view3d canvas')) > 3);
+  const turned = await picture(page, '#view3d canvas');
+  await page.locator('#view3d canvas').focus();
+  await page.keyboard.press('ArrowRight');
+  check('the workpiece of the path turns', (await picture(page, '#view3d canvas')) !== turned);
+  await page.selectOption('#points-what', 'height');
+  check('how many pulses are shown is told', (await page.textContent('#workpiece-lead')).includes(`All ${data.sample.shown.toLocaleString('en-US').replaceAll(',', '\u202f')}`) || data.sample.every > 1);
+  check('the clocks lead from the seed to the job', (await page.locator('#clock-tree .node').count()) === 5);
+  check('one servo period is drawn, without A and B', (await page.locator('#timing path.mirror').count()) === 2 && (await page.locator('#timing .gate').count()) > 0 && (await page.locator('#timing path.pin').count()) === 0);
   check('what does not apply is said', (await page.locator('#absent li').count()) > 3);
   const wider = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
   check(`the page of the path is ${wider} pixels wider than the screen`, wider <= 0);

@@ -1,10 +1,13 @@
 #include "gravure/report/line_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <span>
+#include <string_view>
 
 #include "gravure/core/as_size.hpp"
 #include "gravure/core/board_runs.hpp"
+#include "gravure/core/path_motion.hpp"
 #include "gravure/core/spin_phase.hpp"
 #include "gravure/scan/job_trajectory.hpp"
 #include "gravure/twin/exposure.hpp"
@@ -85,6 +88,21 @@ void add_mirrors(const Plan& plan, LineView& view) {
   }
 }
 
+/// The galvo of a path program: ordered at the begin and at the end of a servo period.
+Result<void> add_set_points(LineSource& program, LineView& view) {
+  const Plan& plan = program.header().plan;
+  std::array<PathSetPoint, 2> points;
+  GRAVURE_CHECK(program.read_set_points(view.line, points));
+  const auto at_mm = [&](const PathSetPoint& point, std::string_view name) {
+    const auto axis = static_cast<std::size_t>(std::find(kPathAxes.begin(), kPathAxes.end(), name) - kPathAxes.begin());
+    return static_cast<double>(point.counts[axis]) / to_double(plan.path->axes[axis].counts_per_unit);
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    view.mirrors.push_back({i == 0 ? 0 : plan.line.slots, at_mm(points[i], "U"), at_mm(points[i], "V")});
+  }
+  return {};
+}
+
 }  // namespace
 
 EdgesIn edges_in(const AbPlan& ab, const std::optional<AxisSpin>& spin, std::int64_t begin, std::int64_t end,
@@ -135,6 +153,10 @@ Result<LineView> line_view(LineSource& program, std::int64_t revolution, std::in
   ProgramChunk chunk;
   GRAVURE_TRY(const std::span<const std::byte> bits, bits_of_line(program, chunk, revolution, line));
   add_gate(bits, plan.line.pixels, view);
+  if (plan.path) {
+    GRAVURE_CHECK(add_set_points(program, view));
+    return view;
+  }
   add_edges(plan, view);
   add_mirrors(plan, view);
   return view;

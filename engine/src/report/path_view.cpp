@@ -118,6 +118,22 @@ void PulseMap::widen(std::int64_t x, std::int64_t y) {
   high_y_ = std::max(high_y_, y);
 }
 
+void PulseSample::take(const std::array<double, 3>& place_mm) {
+  const bool wanted = taken_ % every_ == 0;
+  ++taken_;
+  if (!wanted || !std::all_of(place_mm.begin(), place_mm.end(), [](double at) { return std::isfinite(at); })) {
+    return;
+  }
+  if (places_mm_.size() == kMost) {  // this pulse is one of the next coarser sample: kMost is even
+    for (std::size_t i = 0; i < kMost / 2; ++i) {
+      places_mm_[i] = places_mm_[2 * i];
+    }
+    places_mm_.resize(kMost / 2);
+    every_ *= 2;
+  }
+  places_mm_.push_back(place_mm);
+}
+
 std::vector<double> PulseMap::looked_at(double (*value)(const Cell&)) const {
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(cells().area()));

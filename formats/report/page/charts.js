@@ -125,19 +125,22 @@ gravure.budgetBars = () => {
   for (const text of say) place.append(gravure.element('p', { class: 'small' }, text));
 };
 
+/** A branch of a clock tree: each node with the step that leads to it. */
+gravure.branch = (name, nodes) => {
+  const { element } = gravure;
+  const list = element('ol', { class: 'tree', 'aria-label': name });
+  for (const { title, lines, step, hot } of nodes) {
+    const item = element('li');
+    if (step) item.append(element('div', { class: 'step' }, step));
+    item.append(element('div', { class: hot ? 'node hot' : 'node' }, element('b', {}, title), ...lines.map((line) => element('span', {}, line))));
+    list.append(item);
+  }
+  return [element('h3', { class: 'tree-name' }, name), list];
+};
+
 gravure.clockTree = () => {
   const { clock, job } = gravure.data;
-  const { element, grouped, hertz } = gravure;
-  const branch = (name, nodes) => {
-    const list = element('ol', { class: 'tree', 'aria-label': name });
-    for (const { title, lines, step, hot } of nodes) {
-      const item = element('li');
-      if (step) item.append(element('div', { class: 'step' }, step));
-      item.append(element('div', { class: hot ? 'node hot' : 'node' }, element('b', {}, title), ...lines.map((line) => element('span', {}, line))));
-      list.append(item);
-    }
-    return [element('h3', { class: 'tree-name' }, name), list];
-  };
+  const { branch, grouped, hertz } = gravure;
   const seed = { title: 'Seed laser', lines: [hertz(clock.seed_hz)] };
   const fpga = { title: 'FPGA clock', lines: [hertz(clock.fpga_hz)], step: `× j = ${clock.multiplier}` };
   const place = gravure.at('clock-tree');

@@ -128,6 +128,75 @@ gravure.mapView = () => {
   draw();
 };
 
+/** The pulses where they landed, to be turned; thinned evenly where there are more than a page holds. */
+gravure.workpiece = () => {
+  const { sample, verdict } = gravure.data;
+  const { element, number, grouped } = gravure;
+  const place = gravure.at('workpiece-view');
+  const [x, y, z] = sample.axes;
+  const range = ({ least_mm: least, span_mm: span }) => `${number(least, 5)} to ${number(least + span, 5)}`;
+  const which = sample.every === 1 ? `All ${grouped(sample.shown)} pulses` : `One pulse in ${grouped(sample.every)} of ${grouped(verdict.fired)}, ${grouped(sample.shown)} points,`;
+  gravure.at('workpiece-lead').textContent = sample.shown
+    ? `${which} where the stored set-points put them on the workpiece: x ${range(x)}, y ${range(y)}, z ${range(z)} mm. z points up, nothing is drawn larger than it is.`
+    : 'No pulse fires.';
+  if (!sample.shown) return;
+  if (typeof gravure3d === 'undefined') {
+    place.append(element('p', { class: 'missing', id: 'no-3d' }, 'This build of gravure has no 3-D view: Node.js and npm were not there when it was built. The pulses are shown from above, as heights, under On the surface.'));
+    return;
+  }
+  const shares = sample.axes.map((axis) => gravure.sixteenBits(axis.at));
+  const view = element('div', { class: 'stage', id: 'view3d' });
+  const select = element('select', { id: 'points-what' }, element('option', { value: 'order' }, 'order of marking'), element('option', { value: 'height' }, 'height'));
+  const reset = element('button', { type: 'button' }, 'Front');
+  const bar = element('i');
+  bar.style.background = gravure.depthGradient();
+  const low = element('span');
+  const high = element('span');
+  place.append(element('div', { class: 'controls' }, element('label', { for: 'points-what' }, 'Colours', select), reset), view, element('div', { class: 'scale' }, low, bar, high),
+    element('p', { class: 'small' }, 'Drag or use the arrow keys to turn, wheel or + and − to come nearer.'));
+  const scene = window.gravure3d.showPoints(view, {
+    spansMm: sample.axes.map((axis) => axis.span_mm),
+    shares,
+    label: `${grouped(sample.shown)} pulses on the workpiece`,
+  });
+  if (!scene) {
+    view.replaceWith(element('p', { class: 'missing', id: 'no-webgl' }, 'This browser has no WebGL: the 3-D view cannot be drawn. The pulses are shown from above, as heights, under On the surface.'));
+    return;
+  }
+  const paint = () => {
+    const byHeight = select.value === 'height';
+    scene.setColours((i) => gravure.depthColour(0.15 + 0.85 * (byHeight ? shares[2][i] : i / Math.max(1, sample.shown - 1))));
+    low.textContent = byHeight ? `${number(z.least_mm, 4)} mm` : 'first pulse';
+    high.textContent = byHeight ? `${number(z.least_mm + z.span_mm, 4)} mm` : 'last pulse';
+  };
+  select.addEventListener('change', paint);
+  reset.addEventListener('click', () => scene.reset());
+  paint();
+  gravure.scene = scene;
+};
+
+gravure.clockTree = () => {
+  const { clock, job } = gravure.data;
+  const { grouped, hertz } = gravure;
+  const perSecond = clock.fpga_hz / clock.ticks_per_period;
+  gravure.at('clock-tree').append(...gravure.branch('Light and set-points', [
+    { title: 'Seed laser', lines: [hertz(clock.seed_hz)] },
+    { title: 'FPGA clock', lines: [hertz(clock.fpga_hz)], step: `× j = ${clock.multiplier}` },
+    { title: 'Pulse slot', lines: [`${grouped(clock.ticks_per_slot)} ticks`, `${hertz(clock.pulse_hz.value)} of places in time`], step: `÷ j k = ${clock.multiplier} × ${clock.pulse_divider}` },
+    { title: 'Servo period', lines: [`${grouped(clock.ticks_per_period)} ticks`, `${gravure.number(perSecond, 7)} set-points/s`], step: `÷ ${grouped(clock.slots_per_period)} slots` },
+    { title: 'Job', lines: [`${grouped(job.ticks)} ticks`, gravure.duration(job.duration_s.value)], step: `× ${grouped(clock.periods)} periods`, hot: true }]));
+};
+
+gravure.periodTiming = () => {
+  const { line, clock } = gravure.data;
+  gravure.timingView({
+    line,
+    clock: { ...clock, slots_per_line: clock.slots_per_period, ticks_per_line: clock.ticks_per_period },
+    job: { pixels_per_line: clock.slots_per_period },
+  }, 'servo period', []);
+  gravure.at('timing-view').append(gravure.element('p', { class: 'small' }, 'U and V: the set-points at the begin and the end of the period, joined straight. A pulse fires in the slot in which the path has come a pitch further.'));
+};
+
 gravure.axisTable = () => {
   const { axes } = gravure.data;
   const { element, number } = gravure;
@@ -193,6 +262,6 @@ gravure.absent = () => {
   gravure.at('title').textContent = data.job.title || data.program;
   gravure.at('file').textContent = `${data.program} · ${data.job.mode}`;
   gravure.at('footer').textContent = `Made by ${data.generator} from ${data.program}. Proved on an emulated board and computed: nothing on this page was measured on a machine.`;
-  for (const part of ['verdict', 'tiles', 'jobFacts', 'figureBars', 'mapView', 'axisTable', 'traceCharts', 'absent']) gravure[part]();
+  for (const part of ['verdict', 'tiles', 'jobFacts', 'figureBars', 'mapView', 'workpiece', 'clockTree', 'periodTiming', 'axisTable', 'traceCharts', 'absent']) gravure[part]();
   document.documentElement.dataset.ready = 'true';
 })();

@@ -1,12 +1,13 @@
 'use strict';
 // One line against ticks: mirrors, gate, A and B; zoomable to single ticks.
 
-gravure.timingView = () => {
-  const { line, clock, job } = gravure.data;
+/** Of the line of `data`, which is called `name` on the page; `pinNames`: the outputs that are drawn below the gate. */
+gravure.timingView = ({ line, clock, job } = gravure.data, name = 'line', pinNames = ['A', 'B']) => {
   const { svg, element, number, grouped } = gravure;
   const whole = clock.ticks_per_line;
   const perSlot = clock.ticks_per_slot;
-  gravure.at('timing-lead').textContent = `Line ${grouped(line.line)} of ${gravure.turn()} ${grouped(line.revolution)} runs ${line.reverse ? 'right to left' : 'left to right'} and fires ${grouped(line.fired)} pulses in ${grouped(clock.slots_per_line)} slots: ${grouped(whole)} ticks, ${number((1e6 * whole) / clock.fpga_hz, 6)} µs.`;
+  const what = name === 'line' ? `Line ${grouped(line.line)} of ${gravure.turn()} ${grouped(line.revolution)} runs ${line.reverse ? 'right to left' : 'left to right'} and fires` : `In ${name} ${grouped(line.line)}, the first that fires, there ${line.fired === 1 ? 'is' : 'are'}`;
+  gravure.at('timing-lead').textContent = `${what} ${grouped(line.fired)} ${line.fired === 1 ? 'pulse' : 'pulses'} in ${grouped(clock.slots_per_line)} slots: ${grouped(whole)} ticks, ${number((1e6 * whole) / clock.fpga_hz, 6)} µs.`;
   const edges = [];  // ticks
   let tick = 0;
   for (const step of line.edge_steps) edges.push((tick += step));
@@ -18,7 +19,7 @@ gravure.timingView = () => {
 
   const place = gravure.at('timing-view');
   const buttons = element('div', { class: 'buttons', role: 'group', 'aria-label': 'Zoom' });
-  const holder = element('div', { tabindex: 0, role: 'application', 'aria-label': 'Timing of one line; plus and minus zoom, arrow keys move, Home shows the whole line' });
+  const holder = element('div', { tabindex: 0, role: 'application', 'aria-label': `Timing of one ${name}; plus and minus zoom, arrow keys move, Home shows the whole ${name}` });
   const readout = element('p', { class: 'readout' }, '');
   const controls = element('div', { class: 'controls' }, buttons, element('span', { class: 'small' }, 'Drag to move; Ctrl and wheel, two fingers, or + and − to zoom.'));
   place.append(controls, holder, readout);
@@ -53,7 +54,7 @@ gravure.timingView = () => {
   button('+', 'Zoom in', () => zoom(0.5));
   button('←', 'Earlier', () => move(-0.25));
   button('→', 'Later', () => move(0.25));
-  button('Whole line', 'Show the whole line', () => { view.from = 0; view.to = whole; draw(); });
+  button(`Whole ${name.split(' ').pop()}`, `Show the whole ${name}`, () => { view.from = 0; view.to = whole; draw(); });
   button('First pulses', 'Show the first pulses', () => {
     const first = runs.length ? runs[0][0] : line.first_slot;
     view.from = (first - 2) * perSlot;
@@ -99,8 +100,8 @@ gravure.timingView = () => {
       lanes.push(['V', y, analogue]);
       y += analogue + 16;
     }
-    for (const name of ['gate', 'A', 'B']) {
-      lanes.push([name, y, 30]);
+    for (const lane of ['gate', ...pinNames]) {
+      lanes.push([lane, y, 30]);
       y += 44;
     }
     const height = y + 34;
@@ -113,15 +114,15 @@ gravure.timingView = () => {
       chart.append(svg('line', { x1: x(mark), x2: x(mark), y1: 4, y2: y - 6, stroke: 'var(--line)' }));
       chart.append(svg('text', { x: x(mark), y: y + 10, 'text-anchor': 'middle' }, grouped(Math.round(mark))));
     }
-    chart.append(svg('text', { x: (left + right) / 2, y: y + 28, 'text-anchor': 'middle' }, 'FPGA ticks from the begin of the line'));
+    chart.append(svg('text', { x: (left + right) / 2, y: y + 28, 'text-anchor': 'middle' }, `FPGA ticks from the begin of the ${name}`));
     chart.append(inside);
     const window = [line.first_slot * perSlot, (line.first_slot + job.pixels_per_line) * perSlot];
     inside.append(svg('rect', { x: x(window[0]), width: Math.max(0, x(window[1]) - x(window[0])), y: 2, height: y - 8, fill: 'var(--accent)', opacity: 0.06 }));
-    for (const [name, top, size] of lanes) {
-      chart.append(svg('text', { class: 'strong', x: 2, y: top + size / 2 + 4, style: 'font-weight: 600' }, name));
-      if (name === 'U' || name === 'V') drawMirror(chart, inside, name === 'U' ? 1 : 2, top, size, x, right);
-      else if (name === 'gate') drawGate(inside, top, size, x, right - left);
-      else drawPin(inside, name === 'A' ? 1 : 0, top, size, x, right - left);
+    for (const [lane, top, size] of lanes) {
+      chart.append(svg('text', { class: 'strong', x: 2, y: top + size / 2 + 4, style: 'font-weight: 600' }, lane));
+      if (lane === 'U' || lane === 'V') drawMirror(chart, inside, lane === 'U' ? 1 : 2, top, size, x, right);
+      else if (lane === 'gate') drawGate(inside, top, size, x, right - left);
+      else drawPin(inside, lane === 'A' ? 1 : 0, top, size, x, right - left);
     }
     chart.addEventListener('pointermove', (event) => say(event, chart, right));
     holder.replaceChildren(chart);
@@ -133,9 +134,10 @@ gravure.timingView = () => {
     if (high - low < 1e-9) { low -= 0.5; high += 0.5; }
     const micro = Math.max(Math.abs(low), Math.abs(high)) < 0.5;
     const y = (value) => top + size - ((value - low) / (high - low)) * size;
+    const digits = Math.max(3, 2 + Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (high - low))));
     for (const value of gravure.ticks(low, high, 3)) {
       chart.append(svg('line', { x1: left, x2: right, y1: y(value), y2: y(value), stroke: 'var(--line)', 'stroke-dasharray': '2 3' }));
-      chart.append(svg('text', { x: left - 6, y: y(value) + 4, 'text-anchor': 'end' }, number(micro ? 1000 * value : value, 3)));
+      chart.append(svg('text', { x: left - 6, y: y(value) + 4, 'text-anchor': 'end' }, number(micro ? 1000 * value : value, digits)));
     }
     chart.append(svg('text', { x: 2, y: top + size / 2 + 18 }, micro ? 'µm' : 'mm'));
     const points = line.mirrors.map((sample) => [x(sample[0] * perSlot), y(sample[index])]);
@@ -192,7 +194,8 @@ gravure.timingView = () => {
     const slot = Math.floor(at / perSlot);
     const fires = runs.some(([from, to]) => slot >= from && slot < to);
     const ab = pins(above(edges, at));
-    const parts = [`tick ${grouped(at)}`, `slot ${grouped(slot)}`, `${number((1e6 * at) / clock.fpga_hz, 6)} µs`, `gate ${fires ? 'open' : 'closed'}`, `A ${ab >> 1}`, `B ${ab & 1}`];
+    const parts = [`tick ${grouped(at)}`, `slot ${grouped(slot)}`, `${number((1e6 * at) / clock.fpga_hz, 6)} µs`, `gate ${fires ? 'open' : 'closed'}`];
+    if (pinNames.length) parts.push(`A ${ab >> 1}`, `B ${ab & 1}`);
     if (line.mirrors.length) parts.push(`U ${number(mirrorAt(1, at), 6)} mm`, `V ${number(1000 * mirrorAt(2, at), 5)} µm`);
     readout.textContent = parts.join('  ·  ');
   };
@@ -215,7 +218,7 @@ gravure.timingView = () => {
   gravure.whenSized(holder, (width) => { frameWidth = width; draw(); });
   const say2 = [];
   if (line.no_mirrors) say2.push(`U and V are not shown: ${line.no_mirrors}.`);
-  if (line.gate_cut || line.edges_cut) say2.push('This line has more changes than the page holds; the rest is left out.');
+  if (line.gate_cut || line.edges_cut) say2.push(`This ${name} has more changes than the page holds; the rest is left out.`);
   for (const text of say2) place.append(element('p', { class: 'small' }, text));
   gravure.timing = { view, zoom, draw };
 };

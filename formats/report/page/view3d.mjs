@@ -1,7 +1,8 @@
-// The workpiece with its relief, turnable. Bundled with three.js; the page calls gravure3d.show().
+// The workpiece with its relief, or the pulses on it, turnable. Bundled with three.js; the pages call gravure3d.show() and
+// gravure3d.showPoints().
 import {
   AmbientLight, BufferAttribute, BufferGeometry, CanvasTexture, Color, DirectionalLight, DoubleSide, Mesh,
-  MeshStandardMaterial, PerspectiveCamera, RepeatWrapping, Scene, SRGBColorSpace, Vector3, WebGLRenderer,
+  MeshStandardMaterial, PerspectiveCamera, Points, PointsMaterial, RepeatWrapping, Scene, SRGBColorSpace, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
@@ -99,8 +100,8 @@ class Workpiece {
   }
 }
 
-/** Shows the workpiece in `holder`; null where there is no WebGL. */
-export function show(holder, settings) {
+/** A scene in `holder` about an object of radius `size`, to be turned and come near to; null where there is no WebGL. */
+function stage(holder, label, object, size) {
   let renderer;
   try {
     renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
@@ -110,13 +111,10 @@ export function show(holder, settings) {
   const { canvas } = { canvas: renderer.domElement };
   canvas.tabIndex = 0;
   canvas.setAttribute('role', 'img');
-  canvas.setAttribute('aria-label', settings.label);
+  canvas.setAttribute('aria-label', label);
   holder.append(canvas);
   const scene = new Scene();
-  const workpiece = new Workpiece(settings);
-  workpiece.setDepth(0);
-  scene.add(workpiece.mesh, new AmbientLight(0xffffff, 1.1));
-  const size = workpiece.geometry.boundingSphere.radius;
+  scene.add(object, new AmbientLight(0xffffff, 1.1));
   const camera = new PerspectiveCamera(32, 1, size / 100, size * 20);
   const key = new DirectionalLight(0xffffff, 2.2);
   key.position.set(-0.6, 1, 0.8);
@@ -186,5 +184,38 @@ export function show(holder, settings) {
   new ResizeObserver(fit).observe(holder);
   fit();
   ground();
-  return { setDepth: (mm) => { workpiece.setDepth(mm); draw(); }, reset, turn };
+  return { draw, reset, turn };
+}
+
+/** Shows the workpiece in `holder`; null where there is no WebGL. */
+export function show(holder, settings) {
+  const workpiece = new Workpiece(settings);
+  workpiece.setDepth(0);
+  const scene = stage(holder, settings.label, workpiece.mesh, workpiece.geometry.boundingSphere.radius);
+  return scene && { ...scene, setDepth: (mm) => { workpiece.setDepth(mm); scene.draw(); } };
+}
+
+/** Shows points in `holder`, z upwards: places are shares of the spans of x, y and z; null where there is no WebGL. */
+export function showPoints(holder, { spansMm: [x, y, z], shares, label }) {
+  const count = shares[0].length;
+  const places = new Float32Array(3 * count);
+  for (let i = 0; i < count; ++i) {
+    places.set([(shares[0][i] - 0.5) * x, (shares[2][i] - 0.5) * z, (0.5 - shares[1][i]) * y], 3 * i);
+  }
+  const colours = new Float32Array(3 * count);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(places, 3));
+  geometry.setAttribute('color', new BufferAttribute(colours, 3));
+  const material = new PointsMaterial({ size: 2.5, sizeAttenuation: false, vertexColors: true });
+  const scene = stage(holder, label, new Points(geometry, material), Math.hypot(x, y, z) / 2 || 1);
+  const setColours = (colour) => {
+    const mixed = new Color();
+    for (let i = 0; i < count; ++i) {
+      const [red, green, blue] = colour(i);
+      mixed.setRGB(red / 255, green / 255, blue / 255, SRGBColorSpace).toArray(colours, 3 * i);
+    }
+    geometry.attributes.color.needsUpdate = true;
+    scene.draw();
+  };
+  return scene && { ...scene, setColours };
 }

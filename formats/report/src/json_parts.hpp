@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gravure/core/exact.hpp"
+#include "gravure/report/line_view.hpp"
 
 /// How figures stand in the data of both pages.
 namespace gravure {
@@ -29,6 +30,9 @@ Json report_head(const Data& data) {
             {"notes", data.verified.notes},
             {"lines", data.verified.lines}}}};
 }
+
+/// What happens in the time of one line, or of one servo period.
+Json line_json(const report::LineView& view);
 
 /// Values of 0 to `most` as 16 bits each, little-endian, in base64.
 std::string sixteen_bits(const std::vector<double>& values, double most);

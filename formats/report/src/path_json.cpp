@@ -85,6 +85,26 @@ Json map_json(const report::PulseMap& map) {
           {"heights", sixteen_bits(heights, map.highest_mm() - map.lowest_mm())}};
 }
 
+/// The places of pulses, each axis in 16 bits from its least.
+Json sample_json(const report::PulseSample& sample) {
+  Json axes = Json::array();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    values.reserve(sample.places_mm().size());
+    for (const std::array<double, 3>& place : sample.places_mm()) {
+      values.push_back(place[axis]);
+    }
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    const double low = values.empty() ? 0 : *least;
+    const double span = values.empty() ? 0 : *most - low;
+    for (double& value : values) {
+      value -= low;
+    }
+    axes.push_back({{"least_mm", figure(low)}, {"span_mm", figure(span)}, {"at", sixteen_bits(values, span)}});
+  }
+  return {{"every", sample.every()}, {"shown", sample.places_mm().size()}, {"axes", axes}};
+}
+
 }  // namespace
 
 Result<std::string> path_report_json(const report::PathReportData& data) {
@@ -114,6 +134,8 @@ Result<std::string> path_report_json(const report::PathReportData& data) {
                {"clock",
                 {{"seed_hz", plan.clock.seed_hz},
                  {"fpga_hz", plan.clock.fpga_hz},
+                 {"multiplier", plan.clock.fpga_hz / plan.clock.seed_hz},
+                 {"pulse_divider", plan.clock.pulse_divider},
                  {"pulse_hz", json_of(plan.clock.pulse_hz)},
                  {"ticks_per_slot", plan.clock.ticks_per_slot},
                  {"slots_per_period", plan.line.slots},
@@ -122,6 +144,8 @@ Result<std::string> path_report_json(const report::PathReportData& data) {
                {"figures", figures_json(verified, path)},
                {"axes", axes_json(data)},
                {"map", map_json(data.map)},
+               {"sample", sample_json(data.sample)},
+               {"line", line_json(data.period)},
                {"sources", sources}});
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

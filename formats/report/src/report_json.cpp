@@ -143,31 +143,6 @@ Json error_json(const report::ReportData& data) {
           {"notes", budget.notes}};
 }
 
-Json line_json(const report::LineView& view) {
-  Json gate = Json::array();
-  for (const report::GateRun& run : view.gate) {
-    gate.push_back(run.first_slot);
-    gate.push_back(run.slots);
-  }
-  Json steps = Json::array();  // from edge to edge
-  std::int64_t before = 0;
-  for (const std::int64_t tick : view.edge_ticks) {
-    steps.push_back(tick - before);
-    before = tick;
-  }
-  Json mirrors = Json::array();
-  for (const report::MirrorSample& sample : view.mirrors) {
-    mirrors.push_back({sample.slot, figure(sample.u_mm), figure(sample.v_mm)});
-  }
-  return {{"revolution", view.revolution}, {"line", view.line},
-          {"reverse", view.reverse},       {"first_slot", view.first_slot},
-          {"fired", view.fired},           {"gate", gate},
-          {"gate_cut", view.gate_cut},     {"ab_at_start", view.ab_state_at_start},
-          {"edge_steps", steps},           {"backward", view.backward},
-          {"edges_cut", view.edges_cut},   {"mirrors", mirrors},
-          {"no_mirrors", view.no_mirrors}};
-}
-
 Result<Json> layers_json(const report::ReportData& data) {
   const report::LayerPictures& pictures = data.pictures;
   Result<void> failed;

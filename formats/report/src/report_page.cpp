@@ -117,8 +117,9 @@ Result<std::string> report_page(const report::ReportData& data) {
 
 Result<std::string> path_report_page(const report::PathReportData& data) {
   GRAVURE_TRY(const std::string json, path_report_json(data));
-  return page_of({data.header->plan.title, data.program, page_parts::path_body(), {}, page_parts::path_script()},
-                 data.verified.violations, json);
+  return page_of(
+      {data.header->plan.title, data.program, page_parts::path_body(), page_parts::view3d(), page_parts::path_script()},
+      data.verified.violations, json);
 }
 
 }  // namespace gravure

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "dice.hpp"
@@ -126,6 +127,38 @@ TEST(PulseMap, KeepsItsOutermostCellsWhenTheyGetWider) {
       EXPECT_LE(along_x ? map.left_mm() : map.bottom_mm(), at(low)) << low;
     }
   }
+}
+
+TEST(PulseSample, KeepsEveryNthPulseAndNeverMoreThanItsMost) {
+  PulseSample sample;
+  std::int64_t taken = 0;
+  const auto take_to = [&](std::int64_t count) {
+    for (; taken < count; ++taken) {
+      sample.take({static_cast<double>(taken), 0, -1});
+    }
+  };
+  constexpr auto kMost = static_cast<std::int64_t>(PulseSample::kMost);
+  for (const auto& [count, every] : {std::pair<std::int64_t, std::int64_t>{1, 1},
+                                     {kMost, 1},
+                                     {kMost + 1, 2},
+                                     {2 * kMost, 2},
+                                     {2 * kMost + 1, 4},
+                                     {1'000'000, 64}}) {
+    take_to(count);
+    SCOPED_TRACE(count);
+    EXPECT_EQ(sample.every(), every);
+    ASSERT_EQ(static_cast<std::int64_t>(sample.places_mm().size()), (count + every - 1) / every);
+    for (std::size_t i = 0; i < sample.places_mm().size(); ++i) {
+      ASSERT_EQ(sample.places_mm()[i][0], static_cast<double>(static_cast<std::int64_t>(i) * every)) << i;
+    }
+  }
+}
+
+TEST(PulseSample, LeavesOutWhatIsNoPlace) {
+  PulseSample sample;
+  sample.take({0, std::numeric_limits<double>::infinity(), 0});
+  sample.take({1, 2, 3});
+  EXPECT_EQ(sample.places_mm(), (std::vector<std::array<double, 3>>{{1, 2, 3}}));
 }
 
 TEST(PulseMap, IsLookedAtWithYUpwards) {

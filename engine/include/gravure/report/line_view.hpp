@@ -47,7 +47,8 @@ inline constexpr std::int64_t kMostMirrorSamples = 1'500;
 /// The first line of a revolution, from `line` on, that fires; `line` itself where none does.
 Result<std::int64_t> first_firing_line(LineSource& program, std::int64_t revolution, std::int64_t line);
 
-/// One line as the board puts it out; edges in closed form, exactly. Fails where the program cannot be read.
+/// One line as the board puts it out; edges in closed form, exactly. Of a program that follows a path a line is a servo
+/// period: no edges, and the galvo's set-points at its begin and its end. Fails where the program cannot be read.
 Result<LineView> line_view(LineSource& program, std::int64_t revolution, std::int64_t line);
 
 /// The ticks in (begin, end] of a board run at which A or B of its first channel changes, at most `most`, and how many

@@ -7,6 +7,7 @@
 #include "gravure/core/path_motion.hpp"
 #include "gravure/core/program.hpp"
 #include "gravure/report/area_count.hpp"
+#include "gravure/report/line_view.hpp"
 #include "gravure/twin/verify_path.hpp"
 
 namespace gravure::report {
@@ -62,6 +63,24 @@ class PulseMap {
   double highest_mm_ = 0;
 };
 
+/// Where pulses landed, in the order in which they are marked: all of them, or every second, fourth ... so that there
+/// are never more than kMost.
+class PulseSample {
+ public:
+  static constexpr std::size_t kMost = 20'000;
+
+  /// Takes the next pulse. One whose place is no number is left out.
+  void take(const std::array<double, 3>& place_mm);
+
+  std::int64_t every() const noexcept { return every_; }  ///< of the pulses that were taken
+  const std::vector<std::array<double, 3>>& places_mm() const noexcept { return places_mm_; }
+
+ private:
+  std::int64_t every_ = 1;
+  std::int64_t taken_ = 0;
+  std::vector<std::array<double, 3>> places_mm_;
+};
+
 /// Everything the page of a program that follows a path shows.
 struct PathReportData {
   std::string generator;
@@ -70,6 +89,8 @@ struct PathReportData {
   PathReport verified;
   PathTraces traces;
   PulseMap map;
+  PulseSample sample;
+  LineView period;  ///< the first servo period in which a pulse fires
 };
 
 }  // namespace gravure::report

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gravure/formats/grv.hpp"
+#include "gravure/formats/report_page.hpp"
 #include "program/program_files.hpp"
 #include "program/program_trajectory.hpp"
 #include "report/report_command.hpp"
@@ -61,7 +62,7 @@ Result<std::optional<int>> run_path_report(const ReportArguments& options, const
                 {"revolution", nullptr},
                 {"line", nullptr},
                 {"shown_layers", nullptr},
-                {"view_3d", false}});
+                {"view_3d", report_has_3d()}});
   } else {
     print(verdict_text(request.output, written.bytes, "", violations));
   }

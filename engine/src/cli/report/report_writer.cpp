@@ -69,10 +69,13 @@ Result<WrittenPathReport> write_path_report(const ReportRequest& request, LineSo
   const auto landed = [&data](const LandedPulse& pulse) -> Result<void> {
     const kinematics::Vector3& at = pulse.spot.position_mm;
     data.map.take(at.x(), at.y(), at.z());
+    data.sample.take({at.x(), at.y(), at.z()});
     return {};
   };
   GRAVURE_TRY(data.verified, judge_path_file(program, request.program, folder, landed));
   GRAVURE_TRY(data.traces, report::path_traces(program, kStretches, &cancel_token()));
+  GRAVURE_TRY(const std::int64_t period, report::first_firing_line(program, 0, 0));
+  GRAVURE_TRY(data.period, report::line_view(program, 0, period));
   GRAVURE_TRY(const std::string page, path_report_page(data));
   GRAVURE_CHECK(write_file(request.output, page));
   return WrittenPathReport{std::move(data.verified), static_cast<std::int64_t>(page.size())};
