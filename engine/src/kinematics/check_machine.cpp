@@ -69,8 +69,8 @@ Result<void> check_head(const ScanHead& head) {
   const double corner = head.field_mm * std::sqrt(0.5) * head.tilt_rad_per_mm;
   if (!(head.tilt_rad_per_mm >= 0 && corner <= kMostTilt)) {
     return wrong(ErrorCode::out_of_range, "scan head",
-                 fmt::format("tilt_rad_per_mm = {}: must be 0 to {} with a field of {} mm", head.tilt_rad_per_mm,
-                             kMostTilt / (head.field_mm * std::sqrt(0.5)), head.field_mm));
+                 fmt::format("tilt_rad_per_mm = {:.6g}: must be 0 to {:.6g} with a field of {:.6g} mm",
+                             head.tilt_rad_per_mm, kMostTilt / (head.field_mm * std::sqrt(0.5)), head.field_mm));
   }
   if (head.lens == Lens::telecentric && head.tilt_rad_per_mm != 0) {
     return wrong(ErrorCode::bad_argument, "scan head",

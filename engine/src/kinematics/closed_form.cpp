@@ -158,10 +158,11 @@ Result<Pose> solve_cylinder(const Problem& problem) {
   const double radius = point.norm();
   const double distance = side.dot(on_line);
   if (std::abs(distance) > radius + kReached) {
-    return Error{ErrorCode::out_of_range,
-                 fmt::format("kinematics: the beam passes joint {}'s axis at {} mm and never meets a point only {} mm "
-                             "from it; move V towards 0",
-                             machine.joints[c].name, std::abs(distance), radius)};
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("kinematics: the beam passes joint {}'s axis at {:.6g} mm and never meets a point only {:.6g} mm "
+                    "from it; move V towards 0",
+                    machine.joints[c].name, std::abs(distance), radius)};
   }
   pose.is_singular = radius <= kPole;
   if (pose.is_singular) {
@@ -195,10 +196,11 @@ Result<Pose> solve_tilt_turn(const Problem& problem) {
   if (std::abs(along_tilt) > reach + kReached) {
     return Error{
         ErrorCode::out_of_range,
-        fmt::format("kinematics: joints {} and {} cannot turn this direction into the beam at U = {}, V = {} mm; "
-                    "move U and V towards 0",
-                    problem.machine.joints[outer].name, problem.machine.joints[inner].name, problem.field.u_mm,
-                    problem.field.v_mm)};
+        fmt::format(
+            "kinematics: joints {} and {} cannot turn this direction into the beam at U = {:.6g}, V = {:.6g} mm; "
+            "move U and V towards 0",
+            problem.machine.joints[outer].name, problem.machine.joints[inner].name, problem.field.u_mm,
+            problem.field.v_mm)};
   }
   // A difference of squares as a product: exact near the pole.
   const double rest = std::sqrt(std::max(0.0, (reach - std::abs(along_tilt)) * (reach + std::abs(along_tilt))));

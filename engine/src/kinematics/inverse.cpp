@@ -77,10 +77,11 @@ Result<void> check_reached(const Problem& problem, const Pose& pose) {
   if (missed_mm <= kReached * (1 + problem.position_mm.norm()) && missed_rad <= kReached) {
     return {};
   }
-  return Error{ErrorCode::out_of_range,
-               fmt::format("kinematics: the target is out of reach: the nearest pose found ({}) misses it by {} mm and "
-                           "{} rad; free more joints or start nearer to it",
-                           solver_name(pose.solver), missed_mm, missed_rad)};
+  return Error{
+      ErrorCode::out_of_range,
+      fmt::format("kinematics: the target is out of reach: the nearest pose found ({}) misses it by {:.6g} mm and "
+                  "{:.6g} rad; free more joints or start nearer to it",
+                  solver_name(pose.solver), missed_mm, missed_rad)};
 }
 
 }  // namespace

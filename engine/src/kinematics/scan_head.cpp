@@ -57,10 +57,11 @@ Result<FieldPoint> field_of_point(const ScanHead& head, const Vector3& point_mm)
   }
   const double r = field_radius(distance, point_mm.z(), tilt);
   if (std::isnan(r)) {
-    return Error{ErrorCode::out_of_range,
-                 fmt::format("kinematics: no beam of the f-theta lens (tilt {} rad/mm) passes a point {} mm from the "
-                             "lens axis and {} mm from the focal plane",
-                             tilt, distance, point_mm.z())};
+    return Error{
+        ErrorCode::out_of_range,
+        fmt::format("kinematics: no beam of the f-theta lens (tilt {:.6g} rad/mm) passes a point {:.6g} mm from the "
+                    "lens axis and {:.6g} mm from the focal plane",
+                    tilt, distance, point_mm.z())};
   }
   return FieldPoint{point_mm.x() * r / distance, point_mm.y() * r / distance, point_mm.z() / std::cos(tilt * r)};
 }
@@ -71,8 +72,9 @@ Result<void> check_field(const ScanHead& head, const FieldPoint& field) {
     return {};
   }
   return Error{ErrorCode::out_of_range,
-               fmt::format("kinematics: U = {} mm, V = {} mm: outside the scanner's field_mm = {} (-{} to {}); a field "
-                           "of {} mm would do",
+               fmt::format("kinematics: U = {:.6g} mm, V = {:.6g} mm: outside the scanner's field_mm = {:.6g} (-{:.6g} "
+                           "to {:.6g}); a field "
+                           "of {:.6g} mm would do",
                            field.u_mm, field.v_mm, head.field_mm, head.field_mm / 2, head.field_mm / 2, 2 * reach)};
 }
 

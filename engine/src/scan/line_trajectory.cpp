@@ -80,7 +80,7 @@ Result<Lag> lag_of(const LineTiming& timing, const ScanHead& head) {
   const Rational lag = head.lag_us * Rational(timing.fpga_hz) / Rational(1'000'000);
   if (lag >= Rational(timing.ticks())) {
     return Error{ErrorCode::out_of_range,
-                 fmt::format("scan: lag_us = {}: longer than a line of {} FPGA ticks; at most {} us fit",
+                 fmt::format("scan: lag_us = {}: longer than a line of {} FPGA ticks; at most {:.6g} us fit",
                              to_decimal_string(head.lag_us), timing.ticks(),
                              static_cast<double>(timing.ticks() - 1) / static_cast<double>(timing.fpga_hz) * 1e6)};
   }

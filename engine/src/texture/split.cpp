@@ -124,9 +124,10 @@ Result<Split> split_by_published_rule(const Splitter& splitter, const Surface& s
   }
   return Error{
       ErrorCode::out_of_range,
-      fmt::format("no sigma from {} um down to the step of the path, {} um, meets the limits; the last one leaves "
-                  "{}: widen them, or take a smoother surface or a finer path",
-                  kFirstSigma_mm * 1000, path.step_mm * 1000, broken)};
+      fmt::format(
+          "no sigma from {:.6g} um down to the step of the path, {:.6g} um, meets the limits; the last one leaves "
+          "{}: widen them, or take a smoother surface or a finer path",
+          kFirstSigma_mm * 1000, path.step_mm * 1000, broken)};
 }
 
 std::vector<std::string> violations(const DeviationSummary& most, const DeviationLimits& limits) {

@@ -1,7 +1,11 @@
 #include "gravure/formats/motion_json.hpp"
 
+#include <fmt/format.h>
+
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace gravure::formats {
 namespace {
@@ -13,7 +17,24 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-std::string text_of(const Json& json) {
+/// Twelve digits: what follows them is the rounding of sums in binary, which differs between compilers and tells nobody
+/// anything.
+void round_figures(Json& json) {
+  if (json.is_number_float()) {
+    const std::string text = fmt::format("{:.12g}", json.get<double>());
+    double value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    json = value;
+  }
+  if (json.is_structured()) {
+    for (Json& each : json) {
+      round_figures(each);
+    }
+  }
+}
+
+std::string text_of(Json json) {
+  round_figures(json);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

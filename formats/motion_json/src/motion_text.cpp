@@ -108,8 +108,8 @@ constexpr const char* kSampleColumns = "time_s,position_mm,velocity_mm_s,acceler
 
 std::string sample_row(const motion::Sample& sample) {
   const motion::State& s = sample.state;
-  return fmt::format("{},{},{},{},{}\n", sample.time_s, s.position_mm, s.velocity_mm_s, s.acceleration_mm_s2,
-                     s.jerk_mm_s3);
+  return fmt::format("{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}\n", sample.time_s, s.position_mm, s.velocity_mm_s,
+                     s.acceleration_mm_s2, s.jerk_mm_s3);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "indexing_models.hpp"
 
@@ -22,6 +23,16 @@ TEST(MotionJson, OfAProfileHasItsKeys) {
   EXPECT_NEAR(parsed["access_time_s"].get<double>(), 0.115, 1e-12);
   EXPECT_TRUE(parsed["reduced"]["velocity"].get<bool>());
   EXPECT_TRUE(parsed["reduced"]["acceleration"].get<bool>());
+}
+
+TEST(MotionJson, AndTablesHaveNoDigitsThatAreRoundingOfSums) {
+  const auto profile = motion::plan_profile(motion::test::indexing(250, 7000, 6600, 115)).value();
+  const std::regex noise("[1-9][0-9]{12}");  // more than twelve digits that count
+  for (const std::string& text :
+       {profile_to_json(profile), samples_to_csv(motion::sample_profile(profile, 4000).value())}) {
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(text, found, noise)) << found.str() << " in " << text;
+  }
 }
 
 TEST(MotionJson, OfSeveralAxesHasTheirProfiles) {

@@ -56,7 +56,7 @@ Result<void> write_response(const RespondOptions& options, const std::vector<mot
   for (int i = 0; i <= kPoints; ++i) {
     const double time_s = until_s * i / kPoints;
     const motion::CarriedState state = motion::carried_at(modes, input, time_s);
-    csv += fmt::format("{},{},{}\n", time_s, state.acceleration_mm_s2, state.deviation_mm);
+    csv += fmt::format("{:.12g},{:.12g},{:.12g}\n", time_s, state.acceleration_mm_s2, state.deviation_mm);
     for (std::size_t c = 0; c < 2; ++c) {
       curves[c].x.push_back(time_s * 1e3);
       curves[c].y.push_back(c == 0 ? state.acceleration_mm_s2 : state.deviation_mm);
@@ -151,9 +151,9 @@ std::string search_csv(const motion::SearchReport& report) {
       "factor,residual\n";
   for (const motion::Alternative& row : report.alternatives) {
     const motion::Candidate c = row.profile.value_or(motion::Candidate{});
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", row.name, row.access_time_s, row.positioning_time_s,
-                       row.worst_positioning_time_s, row.envelope_time_s, c.v_mm_s, c.a_up_mm_s2, c.a_down_mm_s2,
-                       c.s_factor, row.residual);
+    csv += fmt::format("{},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}\n", row.name,
+                       row.access_time_s, row.positioning_time_s, row.worst_positioning_time_s, row.envelope_time_s,
+                       c.v_mm_s, c.a_up_mm_s2, c.a_down_mm_s2, c.s_factor, row.residual);
   }
   return csv;
 }

@@ -39,8 +39,8 @@ std::string identification_text(const motion::Identification& found) {
 std::string identification_csv(const motion::Identification& found) {
   std::string csv = "f_hz,f_sd_hz,zeta,zeta_sd,participation,participation_sd,resolution_hz\n";
   for (const motion::IdentifiedMode& m : found.modes) {
-    csv += fmt::format("{},{},{},{},{},{},{}\n", m.mode.f_hz, m.f_sd_hz, m.mode.zeta, m.zeta_sd, m.mode.participation,
-                       m.participation_sd, m.resolution_hz);
+    csv += fmt::format("{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}\n", m.mode.f_hz, m.f_sd_hz, m.mode.zeta,
+                       m.zeta_sd, m.mode.participation, m.participation_sd, m.resolution_hz);
   }
   return csv;
 }

@@ -179,9 +179,9 @@ std::string path_csv(const ToolPath& path, const motion::SmoothPath& smoothed,
   std::string csv = "line,a_before_deg,a_deg,c_before_deg,c_deg,x_mm,y_mm,z_mm,a_shifted_deg,c_shifted_deg\n";
   for (std::size_t k = 0; k < path.block.size(); ++k) {
     const motion::Vector3& tip = smoothed.tools[k].centre_mm;
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", path.read.line[k], path.read.a_deg[k], smoothed.a.angle[k],
-                       path.read.c_deg[k], c_deg[k], tip[0], tip[1], tip[2], axes[0].shifted.angle[k],
-                       axes[1].shifted.angle[k] - path.c_turns[k]);
+    csv += fmt::format("{},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}\n",
+                       path.read.line[k], path.read.a_deg[k], smoothed.a.angle[k], path.read.c_deg[k], c_deg[k], tip[0],
+                       tip[1], tip[2], axes[0].shifted.angle[k], axes[1].shifted.angle[k] - path.c_turns[k]);
   }
   return csv;
 }
