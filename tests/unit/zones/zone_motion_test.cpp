@@ -57,7 +57,7 @@ TEST(ZoneMotion, PutsTheSpotOnTheContoursAndStandsStillWithTheStagesWhileItMarks
   EXPECT_NEAR(motion.length_mm(), plan.length_mm, 1e-9);
   std::vector<PathInstant> instants(static_cast<std::size_t>(motion.instants()));
   ASSERT_TRUE(motion.read(0, instants));
-  EXPECT_EQ(instants[0].axes, (std::array<double, 7>{}));
+  EXPECT_EQ(instants[0].axes, (std::array<double, kPathAxes.size()>{}));
   EXPECT_EQ(instants[0].along_mm, 0);
   EXPECT_NEAR(instants.back().along_mm, plan.length_mm, 1e-9);
   const ZoneTimes& times = motion.times();
