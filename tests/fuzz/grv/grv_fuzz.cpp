@@ -27,20 +27,42 @@ void require(bool holds) {
   }
 }
 
+/// Set-points and wanted points of a path, which are asked for in whatever pieces suit.
+void read_path(gravure::LineSource& source) {
+  constexpr std::int64_t kAtOnce = 1000;
+  constexpr std::int64_t kMost = 100'000;
+  const gravure::Plan& plan = source.header().plan;
+  std::vector<gravure::PathSetPoint> points;
+  for (std::int64_t first = 0, all = std::min(gravure::set_points_of(plan), kMost); first < all; first += kAtOnce) {
+    points.resize(static_cast<std::size_t>(std::min(kAtOnce, all - first)));
+    const auto read = source.read_set_points(first, points);
+    require(read || !read.error().message.empty());
+  }
+  std::vector<gravure::PathTarget> targets;
+  for (std::int64_t first = 0, all = std::min(plan.path ? plan.path->targets : 0, kMost); first < all;
+       first += kAtOnce) {
+    targets.resize(static_cast<std::size_t>(std::min(kAtOnce, all - first)));
+    const auto read = source.read_targets(first, targets);
+    require(read || !read.error().message.empty());
+  }
+}
+
 void read_everything(Bytes image) {
-  const auto source = gravure::grv::open_program(gravure::grv::open_image(image));
-  if (!source) {
+  const auto part = gravure::grv::open_part(gravure::grv::open_image(image));
+  if (!part) {
     return;
   }
-  const auto& header = source.value()->header();
+  const auto& source = part.value().lines;
+  const auto& header = source->header();
+  read_path(*source);
   const std::int64_t lines = header.plan.rotary.lines_per_revolution;
-  const std::int64_t per_chunk = source.value()->lines_per_chunk();
+  const std::int64_t per_chunk = source->lines_per_chunk();
   for (std::int64_t layer = 0; layer < static_cast<std::int64_t>(header.layers.size()); ++layer) {
     for (std::int64_t first = 0; first < lines; first += per_chunk) {
-      const auto chunk = source.value()->fetch({layer, first / per_chunk});
+      const auto chunk = source->fetch({layer, first / per_chunk});
       require(static_cast<bool>(chunk));
       std::vector<std::byte> out(static_cast<std::size_t>(std::min(per_chunk, lines - first) * header.line_bytes()));
-      const auto decoded = source.value()->decode(chunk.value(), out);
+      const auto decoded = source->decode(chunk.value(), out);
       require(decoded || !decoded.error().message.empty());
     }
   }
