@@ -268,8 +268,8 @@ std::span<const std::string_view> other_modes() {
   return kOtherModes;
 }
 
-std::optional<Mode> mode_of(std::string_view word) {
-  const auto found = std::find(kModes.begin(), kModes.end(), word);
+std::optional<Mode> mode_of(std::string_view name) {
+  const auto found = std::find(kModes.begin(), kModes.end(), name);
   return found == kModes.end() ? std::nullopt : std::optional(static_cast<Mode>(found - kModes.begin()));
 }
 

@@ -150,8 +150,8 @@ std::string bracketed(std::string_view section) {
   return "[" + one_line(section) + "]";
 }
 
-bool contains(std::span<const std::string_view> words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+bool contains(std::span<const std::string_view> words, std::string_view wanted) {
+  return std::find(words.begin(), words.end(), wanted) != words.end();
 }
 
 bool check_value(const KeySpec& spec, const Value& value, Violations& violations) {
