@@ -58,7 +58,8 @@ struct ResumeOffset {
 };
 ResumeOffset resume_offset(const Plan& plan, const BoardRun& run, std::int64_t line);
 
-/// "revolution 3, line 17" of a line of the job; in flat mode "pass", of a program that follows a path "servo period 17".
+/// "revolution 3, line 17" of a line of the job; in flat mode "pass", of a program that follows a path "servo period
+/// 17".
 std::string line_text(const Plan& plan, std::int64_t line);
 
 }  // namespace gravure::session
