@@ -16,7 +16,6 @@ Result<TextOutput> TextOutput::create(const std::string& path) {
 }
 
 Result<TextOutput> TextOutput::staged(const std::string& path, std::string text) {
-  cancel_token();  // somebody "looks at it": Ctrl-C leaves no temporary file behind
   GRAVURE_TRY(TextOutput output, create(path));
   output.text_ = std::move(text);
   if (!output.flush(true) || std::fflush(output.file_.get()) != 0) {

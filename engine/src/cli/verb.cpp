@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "gravure/core/file_output.hpp"
 #include "log.hpp"
 
 namespace gravure::cli {
@@ -105,7 +106,7 @@ void promise_json() {
 }
 
 void interrupt() {
-  if (!token_watched) {
+  if (!token_watched && !FileOutput::any_begun()) {
     if (json_promised) {
       constexpr std::string_view kDocument =
           "{\n  \"error\": {\n    \"code\": \"cancelled\",\n    \"message\": \"stopped; nothing was written\"\n  "

@@ -65,7 +65,8 @@ CancelToken& cancel_token();
 Result<void> check_not_stopped();
 /// From now on interrupt() owes standard output a document.
 void promise_json();
-/// What Ctrl-C does: sets the token where somebody looks at it, else ends the program with the status of `cancelled`.
+/// What Ctrl-C does: sets the token where somebody looks at it or a file is being written, else ends the program with
+/// the status of `cancelled`.
 void interrupt();
 
 /// `text` without what a terminal would obey: control characters but line ends, and bytes that are no UTF-8.

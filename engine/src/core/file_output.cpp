@@ -81,7 +81,15 @@ Result<void> write_all(int fd, std::string_view content, const std::string& path
   return {};
 }
 
+// A handler of signals asks for it.
+std::atomic<int> begun{0};
+static_assert(std::atomic<int>::is_always_lock_free);
+
 }  // namespace
+
+bool FileOutput::any_begun() noexcept {
+  return begun > 0;
+}
 
 FileOutput::FileOutput(std::string path, std::string temporary)
     : path_(std::move(path)), temporary_(std::move(temporary)) {}
@@ -104,6 +112,7 @@ void FileOutput::discard() noexcept {
   if (!temporary_.empty()) {
     ::unlink(temporary_.c_str());
     temporary_.clear();
+    --begun;
   }
 }
 
@@ -125,6 +134,7 @@ Result<FileOutput> FileOutput::create(const std::string& path) {
   // Created as any new file is, so that the umask and the folder's own rules hold; O_EXCL keeps the name ours.
   static std::atomic<unsigned> counter{0};
   constexpr int kMostTries = 1000;  // names left behind by a crash are passed over
+  ++begun;                          // before there is a file: a signal between the two must not miss it
   for (int tries = 0; tries < kMostTries; ++tries) {
     std::string temporary = path + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
     const Descriptor file(::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
@@ -132,9 +142,11 @@ Result<FileOutput> FileOutput::create(const std::string& path) {
       return FileOutput(path, std::move(temporary));
     }
     if (errno != EEXIST) {
+      --begun;
       return system_error("cannot create the output", path);
     }
   }
+  --begun;
   return system_error("cannot find a free temporary name beside the output", path);
 }
 

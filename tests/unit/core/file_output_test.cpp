@@ -57,6 +57,20 @@ TEST(FileOutput, LeavesNothingWhenDestroyedBeforeCommit) {
   EXPECT_EQ(files_in(folder.path()), 0U);
 }
 
+TEST(FileOutput, SaysWhetherTheProcessHasAnyOnTheWayOrInItsPlace) {
+  const TempFolder folder;
+  const bool before = FileOutput::any_begun();  // other tests may have run in this process
+  EXPECT_FALSE(FileOutput::create(folder / "missing/a"));
+  EXPECT_EQ(FileOutput::any_begun(), before);
+  {
+    const FileOutput output = FileOutput::create(folder / "a").value();
+    EXPECT_TRUE(FileOutput::any_begun());
+  }
+  EXPECT_EQ(FileOutput::any_begun(), before) << "nothing is left";
+  ASSERT_TRUE(write_file(folder / "b", "b"));
+  EXPECT_TRUE(FileOutput::any_begun());
+}
+
 TEST(FileOutput, CanBeMovedAndStillOwnsOneFile) {
   const TempFolder folder;
   {

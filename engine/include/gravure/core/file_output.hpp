@@ -21,6 +21,9 @@ class FileOutput {
 
   const std::string& temporary_path() const noexcept { return temporary_; }
   const std::string& path() const noexcept { return path_; }
+  /// Whether this process has a file in its place or a temporary one on the way: ending now would leave something
+  /// behind. A signal handler may ask.
+  static bool any_begun() noexcept;
   Result<void> commit();
 
  private:

@@ -155,18 +155,13 @@ Result<void> check_outputs(const OutputOptions& options, const std::vector<std::
   return refuse_overwrite({{"--output", program_output}, {"--csv", options.csv}, {"--plot", options.plot}}, inputs);
 }
 
-Result<void> write_whole(const std::string& path, std::string_view content) {
-  cancel_token();  // somebody "looks at it": Ctrl-C leaves no temporary file behind
-  return write_file(path, content);
-}
-
 Result<void> write_outputs(const OutputOptions& options, const std::string& csv, const std::string& title,
                            const std::string& x_name, const std::vector<formats::Curve>& curves) {
   if (!options.csv.empty()) {
-    GRAVURE_CHECK(write_whole(options.csv, csv));
+    GRAVURE_CHECK(write_file(options.csv, csv));
   }
   if (!options.plot.empty()) {
-    GRAVURE_CHECK(write_whole(
+    GRAVURE_CHECK(write_file(
         options.plot, formats::curves_to_svg(options.plot_title.empty() ? title : options.plot_title, x_name, curves)));
   }
   return {};

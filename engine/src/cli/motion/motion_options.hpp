@@ -75,8 +75,6 @@ void add_output_options(CLI::App& verb, OutputOptions& options);
 /// Fails with bad_argument, before anything is computed, where two of the files to write are one, or one is an input.
 Result<void> check_outputs(const OutputOptions& options, const std::vector<std::string>& inputs,
                            const std::string& program_output = {});
-/// Writes a file, whole or not at all, also under Ctrl-C.
-Result<void> write_whole(const std::string& path, std::string_view content);
 /// Writes what was asked for.
 Result<void> write_outputs(const OutputOptions& options, const std::string& csv, const std::string& title,
                            const std::string& x_name, const std::vector<formats::Curve>& curves);

@@ -205,7 +205,7 @@ Result<int> run_unreverse(const UnreverseOptions& options, bool json) {
   }
   if (!options.rewritten.empty()) {
     GRAVURE_TRY(tool.rewritten, rewrite(options, path, smoothed));
-    GRAVURE_CHECK(write_whole(options.rewritten, tool.rewritten->program));
+    GRAVURE_CHECK(write_file(options.rewritten, tool.rewritten->program));
   }
   const std::vector<formats::UnreversedAxis> axes{axis_of(options, "a", smoothed.a, path.a_deg),
                                                   axis_of(options, "c", smoothed.c, path.c_deg)};
