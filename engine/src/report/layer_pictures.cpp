@@ -235,11 +235,12 @@ Result<LayerPictures> layer_pictures(const std::function<Result<std::unique_ptr<
   const std::int64_t wanted =
       options.threads > 0 ? options.threads : std::max<std::int64_t>(1, std::thread::hardware_concurrency());
   const std::int64_t workers = std::min<std::int64_t>({wanted, 4, work.layers()});
+  const std::int64_t share = (options.memory_bytes - options.program_bytes) / workers;
   std::vector<std::thread> threads;
   for (std::int64_t worker = 1; worker < workers; ++worker) {
-    threads.emplace_back([&] { work.run(programs, options.memory_bytes / workers); });
+    threads.emplace_back([&] { work.run(programs, share); });
   }
-  work.run(programs, options.memory_bytes / workers);
+  work.run(programs, share);
   for (std::thread& thread : threads) {
     thread.join();
   }

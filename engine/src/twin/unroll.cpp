@@ -52,7 +52,7 @@ std::int64_t fixed_bytes(const LineSource& program) {
 /// How many of `all` units of the picture fit the budget, each `unit` bytes; at least one must.
 Result<std::int64_t> fitting(const LineSource& program, const UnrollOptions& options, std::int64_t unit,
                              std::int64_t all) {
-  const std::int64_t fixed = fixed_bytes(program);
+  const std::int64_t fixed = options.program_bytes + fixed_bytes(program);
   if (options.memory_bytes < fixed + unit) {
     return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options.memory_bytes / kMiB) +
                                               " MiB: turning this picture needs at least " +

@@ -22,6 +22,10 @@ namespace {
 
 constexpr std::int64_t kReportBytes = 256;  // of each revolution: its row of the seam table
 
+std::string whole_mib(std::int64_t bytes) {
+  return std::to_string((bytes + kMiB - 1) / kMiB);
+}
+
 /// The layers cut from one source image, and the revolutions that expose each.
 struct Group {
   std::vector<std::int64_t> layers;
@@ -76,12 +80,15 @@ class Verifier {
   friend class Worker;
 
   /// What a worker holds beside what reads the images: a chunk as stored, unpacked, turned, fired, landed and as the
-  /// image has it, once more while its last one is unpacked; the program's header and tables; its library and codec.
+  /// image has it, once more while its last one is unpacked; its library and codec.
   std::int64_t worker_bytes() const {
     constexpr std::int64_t kLibrary = std::int64_t{6} << 20;
+    return kLibrary + 7 * lines_per_chunk_ * header_.line_bytes();
+  }
+  /// What all of them hold together: the program's header and tables, and what is known and reported of revolutions.
+  std::int64_t shared_bytes() const {
     const auto layers = static_cast<std::int64_t>(header_.layers.size());
-    return kLibrary + 7 * lines_per_chunk_ * header_.line_bytes() + 40 * layers * chunks_ + 128 * layers +
-           4 * plan_.job.revolutions;
+    return options_.program_bytes + 128 * layers + (kReportBytes + 12) * plan_.job.revolutions;
   }
 
   /// How many workers the budget holds; their share for images is in image_bytes_.
@@ -91,14 +98,14 @@ class Verifier {
       GRAVURE_TRY(const std::unique_ptr<LayerLines> reader, images());
       image_bytes = reader->least_memory_bytes(lines_per_chunk_);
     }
-    const std::int64_t all = options_.memory_bytes - kReportBytes * plan_.job.revolutions;
+    const std::int64_t all = options_.memory_bytes - shared_bytes();
     const std::int64_t each = worker_bytes() + image_bytes;
     if (all < each) {
       return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options_.memory_bytes / kMiB) +
                                                 " MiB: verifying this program needs at least " +
-                                                std::to_string((options_.memory_bytes - all + each + kMiB - 1) / kMiB) +
-                                                " MiB, " + std::to_string((image_bytes + kMiB - 1) / kMiB) +
-                                                " of them to read its images: raise --memory"};
+                                                whole_mib(shared_bytes() + each) + " MiB, " + whole_mib(image_bytes) +
+                                                " of them to read its images and " + whole_mib(options_.program_bytes) +
+                                                " for the tables of its chunks: raise --memory"};
     }
     const int wanted = options_.threads > 0 ? options_.threads : static_cast<int>(std::thread::hardware_concurrency());
     const std::int64_t tasks = std::max<std::int64_t>(1, static_cast<std::int64_t>(groups_.size()) * chunks_);

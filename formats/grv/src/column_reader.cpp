@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "column_codec.hpp"
 #include "column_table.hpp"
@@ -80,19 +81,22 @@ Result<ColumnReader> ColumnReader::open(hid_t file, const ColumnShape& shape, st
   GRAVURE_TRY(const auto table,
               read_table<std::uint64_t>(file, ("path/" + shape.name + "_chunks").c_str(), table_shape));
   const std::uint64_t whole = static_cast<std::uint64_t>(opened.rows_per_chunk) * shape.columns * sizeof(std::int64_t);
+  std::vector<ColumnChunk> places;
+  places.reserve(table.size() / 3);
   for (std::size_t i = 0; i < table.size(); i += 3) {
     const ColumnChunk chunk{table[i], table[i + 1], table[i + 2]};
     if (chunk.stored_bytes < 1 || chunk.stored_bytes > whole || chunk.stored_bytes > file_bytes ||
         chunk.offset_bytes > file_bytes - chunk.stored_bytes) {
       return bad_table(shape, "chunk " + std::to_string(i / 3) + " lies outside the file or is longer than a chunk");
     }
-    reader.chunks_.push_back(chunk);
+    places.push_back(chunk);
   }
+  reader.chunks_ = std::make_shared<const std::vector<ColumnChunk>>(std::move(places));
   return reader;
 }
 
 Result<void> ColumnReader::load(const ByteFile& file, std::int64_t chunk) {
-  const ColumnChunk& place = chunks_[static_cast<std::size_t>(chunk)];
+  const ColumnChunk& place = (*chunks_)[static_cast<std::size_t>(chunk)];
   const auto damaged = [&](const std::string& why) {
     const std::int64_t first = chunk * rows_per_chunk_;
     return Error{ErrorCode::bad_file, file.path() + ": path/" + shape_.name + ", chunk " + std::to_string(chunk) +

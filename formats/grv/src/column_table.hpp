@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -60,7 +61,8 @@ class ColumnWriter {
   std::int64_t rows_ = 0;
 };
 
-/// Reads one: its place in the file is known, so that the HDF5 library has no part in reading.
+/// Reads one: its place in the file is known, so that the HDF5 library has no part in reading. Copies read for
+/// themselves; the table of the chunks is held once for all of them.
 class ColumnReader {
  public:
   /// Within an Hdf5Session. bad_file where the table is not there in this size.
@@ -79,7 +81,7 @@ class ColumnReader {
   std::int64_t rows_ = 0;
   std::int64_t rows_per_chunk_ = kRowsPerChunk;
   Compression compression_ = Compression::none;
-  std::vector<ColumnChunk> chunks_;
+  std::shared_ptr<const std::vector<ColumnChunk>> chunks_;
   std::int64_t loaded_ = -1;
   std::vector<std::int64_t> values_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -24,17 +25,17 @@
 
 namespace gravure {
 namespace grv {
-namespace {
 
-/// What is known of a program before its first chunk is read.
-struct Contents {
+/// What is known of a program before its first chunk is read: the same for all of its readers.
+struct OpenedProgram {
+  std::shared_ptr<Hdf5Channel> channel;
   ProgramHeader header;
   Layout layout;
   ChunkTables tables;
   std::vector<std::uint64_t> checksums;
   std::vector<std::int64_t> fired;
   Compression compression = Compression::none;
-  ColumnReader set_points;
+  ColumnReader set_points;  ///< nothing of it read: readers read with copies
   ColumnReader targets;
   bool shard = false;
   std::uint32_t format_version = 0;
@@ -49,6 +50,8 @@ struct Contents {
     return {there ? std::int64_t{bits_of_layer[static_cast<std::size_t>(address.layer)]} : -1, address.chunk};
   }
 };
+
+namespace {
 
 Result<Compression> read_compression(hid_t creation) {
   const int filters = H5Pget_nfilters(creation);
@@ -99,33 +102,34 @@ Result<Compression> check_bits(hid_t file, const Layout& layout) {
   return read_compression(creation.get());
 }
 
-Result<void> read_path(hid_t file, Contents& contents, std::uint64_t file_bytes) {
-  const std::optional<PathPlan>& path = contents.header.plan.path;
+Result<void> read_path(hid_t file, OpenedProgram& opened, std::uint64_t file_bytes) {
+  const std::optional<PathPlan>& path = opened.header.plan.path;
   if (!path) {
     return {};
   }
-  GRAVURE_TRY(contents.set_points, ColumnReader::open(file, set_point_columns(path->has_focus_axis()),
-                                                      set_points_of(contents.header.plan), file_bytes));
+  GRAVURE_TRY(opened.set_points, ColumnReader::open(file, set_point_columns(path->has_focus_axis()),
+                                                    set_points_of(opened.header.plan), file_bytes));
   if (path->targets > 0) {
-    GRAVURE_TRY(contents.targets, ColumnReader::open(file, target_columns(), path->targets, file_bytes));
+    GRAVURE_TRY(opened.targets, ColumnReader::open(file, target_columns(), path->targets, file_bytes));
   }
   return {};
 }
 
-Result<void> read_contents(hid_t file, Contents& contents, std::uint64_t file_bytes) {
-  const Layout& layout = contents.layout;
-  GRAVURE_TRY(contents.header, read_header(file, layout, contents.shard, contents.format_version));
-  GRAVURE_TRY(contents.compression, check_bits(file, layout));
+Result<void> read_contents(hid_t file, OpenedProgram& opened, std::uint64_t file_bytes) {
+  const Layout& layout = opened.layout;
+  GRAVURE_TRY(opened.header, read_header(file, layout, opened.shard, opened.format_version));
+  GRAVURE_TRY(opened.compression, check_bits(file, layout));
   const std::array<hsize_t, 2> shape = {static_cast<hsize_t>(layout.layers),
                                         static_cast<hsize_t>(layout.chunks_per_layer())};
-  GRAVURE_TRY(contents.checksums, read_table<std::uint64_t>(file, "layers/checksums", shape));
-  GRAVURE_TRY(contents.fired, read_table<std::int64_t>(file, "layers/chunk_fired_pixels", shape));
-  GRAVURE_CHECK(check_header(contents.header, layout, contents.fired, ErrorCode::bad_file));
-  return read_path(file, contents, file_bytes);
+  GRAVURE_TRY(opened.checksums, read_table<std::uint64_t>(file, "layers/checksums", shape));
+  GRAVURE_TRY(opened.fired, read_table<std::int64_t>(file, "layers/chunk_fired_pixels", shape));
+  GRAVURE_CHECK(check_header(opened.header, layout, opened.fired, ErrorCode::bad_file));
+  return read_path(file, opened, file_bytes);
 }
 
 /// Reads what HDF5 has to say; the file has been verified before, so that the library meets no damaged structure.
-Result<void> read_hdf5(const std::shared_ptr<Hdf5Channel>& channel, Contents& contents) {
+Result<void> read_hdf5(OpenedProgram& opened) {
+  const std::shared_ptr<Hdf5Channel>& channel = opened.channel;
   const Hdf5Session session;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
@@ -139,7 +143,7 @@ Result<void> read_hdf5(const std::shared_ptr<Hdf5Channel>& channel, Contents& co
     return channel->failure().value_or(unreadable);
   }
   GRAVURE_TRY(const std::uint64_t file_bytes, channel->file().size());
-  if (const auto read = read_contents(file.get(), contents, file_bytes); !read) {
+  if (const auto read = read_contents(file.get(), opened, file_bytes); !read) {
     return channel->failure().value_or(Error{read.error().code, path + ": " + read.error().message});
   }
   return {};
@@ -150,11 +154,11 @@ Result<void> read_hdf5(const std::shared_ptr<Hdf5Channel>& channel, Contents& co
 /// A verified program file. Chunks are read straight from their places in the file, without the HDF5 library.
 class GrvSource final : public LineSource {
  public:
-  GrvSource(std::shared_ptr<Hdf5Channel> channel, Contents contents)
-      : channel_(std::move(channel)), contents_(std::move(contents)) {}
+  explicit GrvSource(std::shared_ptr<const OpenedProgram> opened)
+      : opened_(std::move(opened)), set_points_(opened_->set_points), targets_(opened_->targets) {}
 
-  const ProgramHeader& header() const noexcept override { return contents_.header; }
-  std::int64_t lines_per_chunk() const noexcept override { return contents_.layout.lines_per_chunk; }
+  const ProgramHeader& header() const noexcept override { return opened_->header; }
+  std::int64_t lines_per_chunk() const noexcept override { return opened_->layout.lines_per_chunk; }
   Result<StoredChunk> fetch(ChunkAddress address) override;
   Result<void> decode(const StoredChunk& chunk, std::span<std::byte> out) const override;
   Result<void> read_set_points(std::int64_t first, std::span<PathSetPoint> out) override;
@@ -168,34 +172,36 @@ class GrvSource final : public LineSource {
   Result<void> unpack_whole(const StoredChunk& chunk, std::span<std::byte> out) const;
   Result<void> unpack_partial(const StoredChunk& chunk, std::span<std::byte> out) const;
 
-  std::shared_ptr<Hdf5Channel> channel_;
-  Contents contents_;
+  const ByteFile& file() const noexcept { return opened_->channel->file(); }
+
+  std::shared_ptr<const OpenedProgram> opened_;
+  ColumnReader set_points_;
+  ColumnReader targets_;
 };
 
 std::string GrvSource::place(ChunkAddress address) const {
-  const std::size_t index = contents_.layout.index_of(contents_.stored_at(address));
-  return channel_->file().path() + ": " + contents_.layout.describe(address) + " at byte " +
-         std::to_string(contents_.tables.offset_bytes[index]);
+  const std::size_t index = opened_->layout.index_of(opened_->stored_at(address));
+  return file().path() + ": " + opened_->layout.describe(address) + " at byte " +
+         std::to_string(opened_->tables.offset_bytes[index]);
 }
 
 Result<StoredChunk> GrvSource::fetch(ChunkAddress address) {
-  const ChunkAddress stored = contents_.stored_at(address);
-  if (!contents_.layout.contains(stored)) {
-    return Error{ErrorCode::bad_argument, channel_->file().path() + ": " + contents_.layout.describe(address) +
-                                              ": there are " + std::to_string(contents_.header.layers.size()) +
-                                              " layers of " + std::to_string(contents_.layout.chunks_per_layer()) +
-                                              " chunks"};
+  const ChunkAddress stored = opened_->stored_at(address);
+  if (!opened_->layout.contains(stored)) {
+    return Error{ErrorCode::bad_argument, file().path() + ": " + opened_->layout.describe(address) + ": there are " +
+                                              std::to_string(opened_->header.layers.size()) + " layers of " +
+                                              std::to_string(opened_->layout.chunks_per_layer()) + " chunks"};
   }
-  const std::size_t index = contents_.layout.index_of(stored);
+  const std::size_t index = opened_->layout.index_of(stored);
   StoredChunk chunk;
   chunk.address = address;
-  chunk.bytes.resize(static_cast<std::size_t>(contents_.tables.stored_bytes[index]));
+  chunk.bytes.resize(static_cast<std::size_t>(opened_->tables.stored_bytes[index]));
   // Compressed chunks are shorter than raw ones by a tenth at least, so the length tells which it is.
-  const bool raw = chunk.bytes.size() == static_cast<std::size_t>(contents_.layout.chunk_bytes());
-  chunk.filter_mask = raw && contents_.compression != Compression::none ? 1U : 0U;
-  chunk.checksum = contents_.checksums[index];
-  chunk.fired_pixels = contents_.fired[index];
-  GRAVURE_TRY(const std::size_t got, channel_->file().read(contents_.tables.offset_bytes[index], chunk.bytes));
+  const bool raw = chunk.bytes.size() == static_cast<std::size_t>(opened_->layout.chunk_bytes());
+  chunk.filter_mask = raw && opened_->compression != Compression::none ? 1U : 0U;
+  chunk.checksum = opened_->checksums[index];
+  chunk.fired_pixels = opened_->fired[index];
+  GRAVURE_TRY(const std::size_t got, file().read(opened_->tables.offset_bytes[index], chunk.bytes));
   if (got != chunk.bytes.size()) {
     return damaged(address, "the file has become shorter since it was opened");
   }
@@ -203,8 +209,8 @@ Result<StoredChunk> GrvSource::fetch(ChunkAddress address) {
 }
 
 Result<void> GrvSource::unpack_whole(const StoredChunk& chunk, std::span<std::byte> out) const {
-  const bool raw = chunk.filter_mask != 0 || contents_.compression == Compression::none;
-  if (const auto unpacked = unpack(contents_.compression, raw, chunk.bytes, out); !unpacked) {
+  const bool raw = chunk.filter_mask != 0 || opened_->compression == Compression::none;
+  if (const auto unpacked = unpack(opened_->compression, raw, chunk.bytes, out); !unpacked) {
     return damaged(chunk.address, unpacked.error().message);
   }
   return {};
@@ -212,7 +218,7 @@ Result<void> GrvSource::unpack_whole(const StoredChunk& chunk, std::span<std::by
 
 Result<void> GrvSource::unpack_partial(const StoredChunk& chunk, std::span<std::byte> out) const {
   thread_local std::vector<std::byte> whole;
-  whole.resize(static_cast<std::size_t>(contents_.layout.chunk_bytes()));
+  whole.resize(static_cast<std::size_t>(opened_->layout.chunk_bytes()));
   GRAVURE_CHECK(unpack_whole(chunk, whole));
   const auto rest = std::span(whole).subspan(out.size());
   if (std::any_of(rest.begin(), rest.end(), [](std::byte byte) { return byte != std::byte{0}; })) {
@@ -223,69 +229,84 @@ Result<void> GrvSource::unpack_partial(const StoredChunk& chunk, std::span<std::
 }
 
 Result<void> GrvSource::decode(const StoredChunk& chunk, std::span<std::byte> out) const {
-  const Layout& layout = contents_.layout;
-  const bool known = layout.contains(contents_.stored_at(chunk.address));
+  const Layout& layout = opened_->layout;
+  const bool known = layout.contains(opened_->stored_at(chunk.address));
   const auto bytes = known ? static_cast<std::size_t>(layout.lines_in(chunk.address.chunk) * layout.line_bytes) : 0;
   if (!known || out.size() != bytes) {
-    return Error{ErrorCode::bad_argument, channel_->file().path() + ": " + layout.describe(chunk.address) +
+    return Error{ErrorCode::bad_argument, file().path() + ": " + layout.describe(chunk.address) +
                                               ": no such chunk, or room for " + std::to_string(out.size()) +
                                               " bytes instead of " + std::to_string(bytes)};
   }
-  const std::size_t index = layout.index_of(contents_.stored_at(chunk.address));
-  if (hash_of(chunk.bytes) != contents_.checksums[index]) {
+  const std::size_t index = layout.index_of(opened_->stored_at(chunk.address));
+  if (hash_of(chunk.bytes) != opened_->checksums[index]) {
     return damaged(chunk.address, "altered, its checksum does not hold");
   }
   const bool whole = bytes == static_cast<std::size_t>(layout.chunk_bytes());
   GRAVURE_CHECK(whole ? unpack_whole(chunk, out) : unpack_partial(chunk, out));
-  if ((merge_last_bytes(out, layout.line_bytes) & unused_bits(contents_.header.plan.line.pixels)) != 0) {
+  if ((merge_last_bytes(out, layout.line_bytes) & unused_bits(opened_->header.plan.line.pixels)) != 0) {
     return damaged(chunk.address, "bits are set beyond the last pixel of a line");
   }
-  if (raster::popcount(out) != contents_.fired[index]) {
+  if (raster::popcount(out) != opened_->fired[index]) {
     return damaged(chunk.address, std::to_string(raster::popcount(out)) + " pixels fire, the table says " +
-                                      std::to_string(contents_.fired[index]));
+                                      std::to_string(opened_->fired[index]));
   }
   return {};
 }
 
 Result<void> GrvSource::read_set_points(std::int64_t first, std::span<PathSetPoint> out) {
-  const Plan& plan = contents_.header.plan;
+  const Plan& plan = opened_->header.plan;
   const bool focus_axis = plan.path && plan.path->has_focus_axis();
   std::vector<std::int64_t> rows(out.size() * set_point_columns(focus_axis).columns);
-  GRAVURE_CHECK(contents_.set_points.read(channel_->file(), first, rows));
+  GRAVURE_CHECK(set_points_.read(file(), first, rows));
   set_points_from(rows, focus_axis, out);
   return {};
 }
 
 Result<void> GrvSource::read_targets(std::int64_t first, std::span<PathTarget> out) {
   std::vector<std::int64_t> rows(out.size() * target_columns().columns);
-  GRAVURE_CHECK(contents_.targets.read(channel_->file(), first, rows));
+  GRAVURE_CHECK(targets_.read(file(), first, rows));
   targets_from(rows, out);
   return {};
 }
 
+namespace {
+
+Result<std::shared_ptr<const OpenedProgram>> open_any(std::unique_ptr<ByteFile> file, std::int64_t memory_bytes) {
+  auto opened = std::make_shared<OpenedProgram>();
+  opened->channel = std::make_shared<Hdf5Channel>(std::move(file));
+  GRAVURE_TRY(Sealed sealed, verify_seal(opened->channel->file(), memory_bytes));
+  opened->layout = sealed.seal.layout;
+  opened->shard = sealed.seal.shard;
+  opened->format_version = sealed.seal.format_version;
+  opened->tables = std::move(sealed.tables);
+  GRAVURE_CHECK(read_hdf5(*opened));
+  return std::shared_ptr<const OpenedProgram>(std::move(opened));
+}
+
+Result<std::shared_ptr<const OpenedProgram>> open_whole(std::unique_ptr<ByteFile> file, std::int64_t memory_bytes) {
+  GRAVURE_TRY(std::shared_ptr<const OpenedProgram> opened, open_any(std::move(file), memory_bytes));
+  if (const std::optional<Shard> shard = opened->header.shard) {
+    return Error{ErrorCode::bad_file, opened->channel->file().path() + ": is a shard, revolutions " +
+                                          std::to_string(shard->first) + " to " + std::to_string(shard->end - 1) +
+                                          " of " + std::to_string(opened->header.plan.job.revolutions) +
+                                          ": put all shards of the job together with `gravure merge`"};
+  }
+  return opened;
+}
+
+constexpr std::int64_t kUnbounded = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace
+
 Result<GrvPart> open_part(std::unique_ptr<ByteFile> file) {
-  auto channel = std::make_shared<Hdf5Channel>(std::move(file));
-  GRAVURE_TRY(Sealed sealed, verify_seal(channel->file()));
-  Contents contents;
-  contents.layout = sealed.seal.layout;
-  contents.shard = sealed.seal.shard;
-  contents.format_version = sealed.seal.format_version;
-  contents.tables = std::move(sealed.tables);
-  GRAVURE_CHECK(read_hdf5(channel, contents));
-  const Compression compression = contents.compression;
-  return GrvPart{std::make_unique<GrvSource>(std::move(channel), std::move(contents)), compression};
+  GRAVURE_TRY(std::shared_ptr<const OpenedProgram> opened, open_any(std::move(file), kUnbounded));
+  const Compression compression = opened->compression;
+  return GrvPart{std::make_unique<GrvSource>(std::move(opened)), compression};
 }
 
 Result<std::unique_ptr<LineSource>> open_program(std::unique_ptr<ByteFile> file) {
-  const std::string path = file->path();
-  GRAVURE_TRY(GrvPart part, open_part(std::move(file)));
-  if (const std::optional<Shard> shard = part.lines->header().shard) {
-    return Error{ErrorCode::bad_file, path + ": is a shard, revolutions " + std::to_string(shard->first) + " to " +
-                                          std::to_string(shard->end - 1) + " of " +
-                                          std::to_string(part.lines->header().plan.job.revolutions) +
-                                          ": put all shards of the job together with `gravure merge`"};
-  }
-  return std::move(part.lines);
+  GRAVURE_TRY(std::shared_ptr<const OpenedProgram> opened, open_whole(std::move(file), kUnbounded));
+  return std::unique_ptr<LineSource>(std::make_unique<GrvSource>(std::move(opened)));
 }
 
 }  // namespace grv
@@ -293,6 +314,24 @@ Result<std::unique_ptr<LineSource>> open_program(std::unique_ptr<ByteFile> file)
 Result<std::unique_ptr<LineSource>> open_grv(const std::string& path) {
   GRAVURE_TRY(auto file, grv::open_file(path, grv::OpenFor::reading, path));
   return grv::open_program(std::move(file));
+}
+
+Result<GrvProgram> GrvProgram::open(const std::string& path, std::int64_t memory_bytes) {
+  GRAVURE_TRY(auto file, grv::open_file(path, grv::OpenFor::reading, path));
+  GRAVURE_TRY(std::shared_ptr<const grv::OpenedProgram> opened, grv::open_whole(std::move(file), memory_bytes));
+  return GrvProgram(std::move(opened));
+}
+
+const ProgramHeader& GrvProgram::header() const noexcept {
+  return opened_->header;
+}
+
+std::unique_ptr<LineSource> GrvProgram::reader() const {
+  return std::make_unique<grv::GrvSource>(opened_);
+}
+
+std::int64_t GrvProgram::table_bytes() const noexcept {
+  return grv::kTableBytesPerChunk * opened_->layout.chunks();
 }
 
 Result<GrvPart> open_grv_part(const std::string& path) {

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "codec.hpp"
+#include "gravure/core/units.hpp"
 
 namespace gravure::grv {
 namespace {
@@ -106,6 +107,17 @@ Result<ChunkTables> read_tables(const ByteFile& file, const Seal& seal, std::uin
                          std::to_string(seal.stored_table_at) + " are damaged: get a good copy");
   }
   return tables;
+}
+
+Result<void> check_memory(const ByteFile& file, const Layout& layout, std::int64_t memory_bytes) {
+  const std::int64_t need = kTableBytesPerChunk * layout.chunks();
+  if (need <= memory_bytes) {
+    return {};
+  }
+  return Error{ErrorCode::out_of_range, file.path() + ": memory budget of " + std::to_string(memory_bytes / kMiB) +
+                                            " MiB: the tables of its " + std::to_string(layout.chunks()) +
+                                            " chunks alone take " + std::to_string((need + kMiB - 1) / kMiB) +
+                                            " MiB: raise --memory"};
 }
 
 Error cut_off(const ByteFile& file, const Seal& seal, const ChunkTables& tables, std::uint64_t size) {
@@ -224,7 +236,7 @@ Result<void> write_seal(ByteFile& file, const Layout& layout, const ChunkTables&
   return file.flush();
 }
 
-Result<Sealed> verify_seal(const ByteFile& file) {
+Result<Sealed> verify_seal(const ByteFile& file, std::int64_t memory_bytes) {
   GRAVURE_TRY(const std::uint64_t size, file.size());
   std::array<std::byte, Seal::kBytes> bytes = {};
   GRAVURE_TRY(const std::size_t got, file.read(0, bytes));
@@ -234,6 +246,7 @@ Result<Sealed> verify_seal(const ByteFile& file) {
   Sealed sealed;
   GRAVURE_TRY(sealed.seal, decode_seal(bytes, file.path()));
   const Seal& seal = sealed.seal;
+  GRAVURE_CHECK(check_memory(file, seal.layout, memory_bytes));
   GRAVURE_TRY(sealed.tables, read_tables(file, seal, std::min(size, seal.file_bytes)));
   if (size < seal.file_bytes) {
     return cut_off(file, seal, sealed.tables, size);

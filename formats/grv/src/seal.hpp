@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -53,7 +54,10 @@ struct Sealed {
   Seal seal;
   ChunkTables tables;
 };
-/// Verifies everything but the chunks.
-Result<Sealed> verify_seal(const ByteFile& file);
+/// What is held of each chunk of an open program: its place, its length, its checksum and how many pixels fire.
+inline constexpr std::int64_t kTableBytesPerChunk = 4 * sizeof(std::uint64_t);
+/// Verifies everything but the chunks. out_of_range, before they are read, where all tables would take more than
+/// `memory_bytes`.
+Result<Sealed> verify_seal(const ByteFile& file, std::int64_t memory_bytes = std::numeric_limits<std::int64_t>::max());
 
 }  // namespace gravure::grv

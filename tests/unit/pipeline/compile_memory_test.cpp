@@ -1,68 +1,6 @@
-#include <malloc.h>
-
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "counted_memory.hpp"
 #include "gravure/core/units.hpp"
 #include "pipeline_support.hpp"
-
-/// Every allocation of this test program is counted, so that what compile() holds at once is measured, not believed.
-namespace {
-
-std::atomic<std::int64_t> held_bytes{0};
-std::atomic<std::int64_t> peak_bytes{0};
-
-void* take(std::size_t size) {
-  void* const block = std::malloc(size == 0 ? 1 : size);
-  if (block == nullptr) {
-    throw std::bad_alloc();
-  }
-  const auto bytes = static_cast<std::int64_t>(::malloc_usable_size(block));
-  const std::int64_t now = held_bytes.fetch_add(bytes) + bytes;
-  std::int64_t peak = peak_bytes.load();
-  while (now > peak && !peak_bytes.compare_exchange_weak(peak, now)) {
-  }
-  return block;
-}
-
-void give_back(void* block) noexcept {
-  if (block != nullptr) {
-    held_bytes.fetch_sub(static_cast<std::int64_t>(::malloc_usable_size(block)));
-    std::free(block);
-  }
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return take(size);
-}
-void* operator new[](std::size_t size) {
-  return take(size);
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {  // std::stable_sort asks for room so
-  try {
-    return take(size);
-  } catch (const std::bad_alloc&) {
-    return nullptr;
-  }
-}
-void operator delete(void* block) noexcept {
-  give_back(block);
-}
-void operator delete(void* block, const std::nothrow_t&) noexcept {
-  give_back(block);
-}
-void operator delete[](void* block) noexcept {
-  give_back(block);
-}
-void operator delete(void* block, std::size_t) noexcept {
-  give_back(block);
-}
-void operator delete[](void* block, std::size_t) noexcept {
-  give_back(block);
-}
 
 namespace gravure::test {
 namespace {

@@ -1,5 +1,6 @@
 #include "gravure/twin/unroll.hpp"
 
+#include "gravure/core/units.hpp"
 #include "twin_support.hpp"
 
 namespace gravure::test {
@@ -150,6 +151,18 @@ TEST(Unroll, RefusesADeviceThatShowsNoLines) {
   ASSERT_FALSE(unrolled.result);
   EXPECT_EQ(unrolled.result.error().code, ErrorCode::device);
   EXPECT_TRUE(unrolled.bytes.empty());
+}
+
+TEST(Unroll, CountsWhatTheReadersOfTheProgramShare) {
+  SmallJob small;
+  prepare(small, LinesAlong::columns, 13, 45, 1);
+  compile_job(small, 1, LayerOrder::sequence);
+  EXPECT_TRUE(unroll_to_memory(small, 0, {.memory_bytes = 8 * kMiB}).result);
+  EXPECT_TRUE(unroll_to_memory(small, 0, {.memory_bytes = 12 * kMiB, .program_bytes = 4 * kMiB}).result);
+  const Result<void> refused = unroll_to_memory(small, 0, {.memory_bytes = 8 * kMiB, .program_bytes = 4 * kMiB}).result;
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+  EXPECT_NE(refused.error().message.find("needs at least 11 MiB"), std::string::npos) << refused.error().message;
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "gravure/twin/verify.hpp"
 
+#include <atomic>
+
+#include "gravure/core/units.hpp"
 #include "gravure/sync/drift.hpp"
 #include "twin_support.hpp"
 
@@ -275,6 +278,34 @@ TEST(Verify, RunsOutOfMemoryWithAnError) {
     EXPECT_EQ(report.error().code, ErrorCode::io);
     EXPECT_EQ(report.error().message.rfind("out of memory", 0), 0U);
   }
+}
+
+/// What the readers of a program hold together is in the budget once, whoever else works.
+TEST(Verify, CountsOnceWhatTheReadersOfTheProgramShare) {
+  SmallJob small;
+  sound_job(small);
+  const auto readers_of = [&small](const VerifyOptions& options, Result<VerifyReport>& report) {
+    std::atomic<int> readers = 0;
+    const auto programs = [&]() -> Result<std::unique_ptr<LineSource>> {
+      ++readers;
+      return std::unique_ptr<LineSource>(std::make_unique<MemorySource>(small.program));
+    };
+    report = verify(programs, emulated(), {}, options);
+    return readers.load();
+  };
+  Result<VerifyReport> report = Error{ErrorCode::bad_argument, "not run"};
+  // A worker takes a little more than 6 MiB; verify() itself has a reader, too.
+  EXPECT_EQ(readers_of({.memory_bytes = 20 * kMiB, .threads = 4}, report), 1 + 3);
+  EXPECT_TRUE(report);
+  EXPECT_EQ(readers_of({.memory_bytes = 30 * kMiB, .program_bytes = 10 * kMiB, .threads = 4}, report), 1 + 3);
+  EXPECT_TRUE(report);
+  EXPECT_EQ(readers_of({.memory_bytes = 20 * kMiB, .program_bytes = 14 * kMiB, .threads = 4}, report), 1);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(
+      report.error().message,
+      "memory budget of 20 MiB: verifying this program needs at least 21 MiB, 0 of them to read its images and 14 "
+      "for the tables of its chunks: raise --memory");
 }
 
 }  // namespace

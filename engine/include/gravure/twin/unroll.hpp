@@ -12,6 +12,7 @@ namespace gravure {
 
 struct UnrollOptions {
   std::int64_t memory_bytes = std::int64_t{256} << 20;
+  std::int64_t program_bytes = 0;  ///< of them for what the readers of the program hold together
   CancelToken* cancel = nullptr;
 };
 

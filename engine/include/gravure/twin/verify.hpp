@@ -79,7 +79,8 @@ struct BudgetOptions {
 
 struct VerifyOptions {
   std::int64_t memory_bytes = std::int64_t{256} << 20;
-  int threads = 0;  ///< 0: one for each processor
+  std::int64_t program_bytes = 0;  ///< of them for what the readers of the program hold together
+  int threads = 0;                 ///< 0: one for each processor
   CancelToken* cancel = nullptr;
   Progress* progress = nullptr;
   std::optional<BudgetOptions> budget = {};
@@ -91,8 +92,8 @@ struct VerifyOptions {
 /// The set-points that a program stores are held against its plan's, each. With `budget`, the landing of the pulses is
 /// bounded and sampled as error_budget() does and judged by its limits. Violations are reported, not errors; errors are
 /// an unreadable program, a memory budget too small for one worker (out of range, naming what is needed) and
-/// cancellation. An image that cannot be read is a violation, too, and all others are still compared. `programs` opens
-/// the program once for each worker; fewer run where memory does not suffice.
+/// cancellation. An image that cannot be read is a violation, too, and all others are still compared. `programs` gives
+/// each worker a reader of the program; fewer run where memory does not suffice.
 Result<VerifyReport> verify(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,
                             const DeviceFactory& devices, const LayerLinesFactory& images,
                             const VerifyOptions& options);

@@ -164,12 +164,15 @@ std::vector<std::string> files_of(const Job& job) {
 }
 
 std::vector<std::string> inputs_of_program(const std::string& path) {
-  std::vector<std::string> inputs = {path};
   const Result<std::unique_ptr<LineSource>> program = open_grv(path);
   if (!program) {
-    return inputs;  // whoever reads it says why
+    return {path};  // whoever reads it says why
   }
-  const ProgramHeader& header = program.value()->header();
+  return inputs_of_program(path, program.value()->header());
+}
+
+std::vector<std::string> inputs_of_program(const std::string& path, const ProgramHeader& header) {
+  std::vector<std::string> inputs = {path};
   const std::string job_path = (fs::path(path).parent_path() / header.job_path).string();
   inputs.push_back(job_path);
   if (const Result<Job> job = parse_job(header.job_text, job_path); job) {

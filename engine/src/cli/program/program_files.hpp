@@ -76,6 +76,8 @@ std::vector<std::string> named_files(const Job& job);
 std::vector<std::string> files_of(const Job& job);
 /// A program and what it was made from, as far as it tells: no output may take the place of one of them.
 std::vector<std::string> inputs_of_program(const std::string& path);
+/// The same of one that is open.
+std::vector<std::string> inputs_of_program(const std::string& path, const ProgramHeader& header);
 
 /// How many different revolutions a program holds: those that expose the same are stored once.
 std::size_t different_revolutions(const ProgramHeader& header);

@@ -121,10 +121,9 @@ void note_changed_files(const ProgramHeader& header, const std::string& path, co
 
 }  // namespace
 
-Result<VerifiedProgram> verify_program_file(const std::string& path, const std::string& images,
+Result<VerifiedProgram> verify_program_file(GrvProgram program, const std::string& path, const std::string& images,
                                             const Command& command) {
-  GRAVURE_TRY(std::unique_ptr<LineSource> program, open_grv(path));
-  const ProgramHeader& header = program->header();
+  const ProgramHeader& header = program.header();
   const ImageFiles files;
   GRAVURE_TRY(const FoundImages found, find_images(header, path, images, files));
   GRAVURE_TRY(Job job, parse_job(header.job_text, header.job_path));
@@ -140,11 +139,13 @@ Result<VerifiedProgram> verify_program_file(const std::string& path, const std::
     ProgressBar bar("verify");
     VerifyOptions verify_options;
     verify_options.memory_bytes = command.memory_bytes();
+    verify_options.program_bytes = program.table_bytes();
     verify_options.threads = command.threads;
     verify_options.cancel = &cancel_token();
     verify_options.progress = &bar;
     verify_options.budget = BudgetOptions{job.twin, job.limits.landing_um, job.limits.defocus_um};
-    return verify([&path] { return open_grv(path); }, emulated_devices(), readers, verify_options);
+    const auto programs = [&program]() -> Result<std::unique_ptr<LineSource>> { return program.reader(); };
+    return verify(programs, emulated_devices(), readers, verify_options);
   }();
   GRAVURE_TRY(VerifyReport report, std::move(verified));
   if (contradiction) {

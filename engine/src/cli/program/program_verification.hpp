@@ -1,10 +1,10 @@
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "gravure/core/job.hpp"
 #include "gravure/core/program.hpp"
+#include "gravure/formats/grv.hpp"
 #include "gravure/twin/verify.hpp"
 #include "verb.hpp"
 
@@ -12,13 +12,14 @@ namespace gravure::cli {
 
 /// A program, the job it carries, and what its verification found.
 struct VerifiedProgram {
-  std::unique_ptr<LineSource> program;
+  GrvProgram program;
   Job job;
   VerifyReport report;
 };
 
 /// Runs the whole program on the emulated board and judges it, with a progress bar: what `verify` and `report` do.
 /// Images are sought at the job's paths, or below `images`.
-Result<VerifiedProgram> verify_program_file(const std::string& path, const std::string& images, const Command& command);
+Result<VerifiedProgram> verify_program_file(GrvProgram program, const std::string& path, const std::string& images,
+                                            const Command& command);
 
 }  // namespace gravure::cli

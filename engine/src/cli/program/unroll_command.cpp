@@ -78,7 +78,7 @@ Result<BilevelTiffPage> page_of(const ProgramHeader& header, const UnrollArgumen
   page.compression = options.compression == "source" ? TiffCompression::deflate : compression_of(options.compression);
   page.x_dots_per_mm = rows ? along : across;
   page.y_dots_per_mm = rows ? across : along;
-  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program), Writes::picture));
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program, header), Writes::picture));
   if (source == nullptr) {
     return page;  // where that is wrong, unroll() says so
   }
@@ -136,8 +136,9 @@ Result<void> check_selected(const UnrollArguments& options) {
 
 Result<int> run_unroll(const UnrollArguments& options, const Command& command) {
   GRAVURE_CHECK(check_name(options.output));
-  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
-  const ProgramHeader& header = program->header();
+  GRAVURE_TRY(const GrvProgram opened, GrvProgram::open(options.program, command.memory_bytes()));
+  const std::unique_ptr<LineSource> program = opened.reader();
+  const ProgramHeader& header = opened.header();
   if (header.plan.path) {
     GRAVURE_CHECK(check_selected(options));
     GRAVURE_TRY(const BilevelTiffPage page, path_page_of(header, options));
@@ -148,6 +149,7 @@ Result<int> run_unroll(const UnrollArguments& options, const Command& command) {
   GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options, unrolled_size(header), shown));
   UnrollOptions unroll_options;
   unroll_options.memory_bytes = command.memory_bytes();
+  unroll_options.program_bytes = opened.table_bytes();
   unroll_options.cancel = &cancel_token();  // before there is a temporary file: from here on Ctrl-C takes it away again
   GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(options.output, page));
   std::vector<std::byte> inverted;

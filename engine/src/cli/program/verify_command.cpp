@@ -163,9 +163,9 @@ ReportRequest page_request(const std::string& path, const VerifyArguments& optio
 }
 
 /// The program may be one that was just made of the job that is verified: its sources are the job's.
-Result<void> refuse_html(const std::string& path, const VerifyArguments& options) {
+Result<void> refuse_html(const std::string& path, const ProgramHeader& header, const VerifyArguments& options) {
   GRAVURE_CHECK(refuse_overwrite(options.html, {options.input}));
-  return refuse_overwrite(options.html, inputs_of_program(path));
+  return refuse_overwrite(options.html, inputs_of_program(path, header));
 }
 
 /// `--html`: written whatever the verdict.
@@ -175,24 +175,28 @@ Result<void> write_page(const std::string& path, VerifiedProgram verified, const
   return {};
 }
 
+Result<int> verify_path(const GrvProgram& program, const std::string& path, const VerifyArguments& options,
+                        const Command& command) {
+  const std::unique_ptr<LineSource> lines = program.reader();
+  if (options.html.empty()) {
+    GRAVURE_TRY(const PathReport report, judge_path_file(*lines, path, options.images));
+    return print_path_report(report, command);
+  }
+  GRAVURE_TRY(const WrittenPathReport written, write_path_report(page_request(path, options), *lines, options.images));
+  return print_path_report(written.verified, command);
+}
+
 Result<int> verify_program(const std::string& path, const VerifyArguments& options, const Command& command) {
+  GRAVURE_TRY(GrvProgram program, GrvProgram::open(path, command.memory_bytes()));
   if (!options.html.empty()) {
-    GRAVURE_CHECK(refuse_html(path, options));  // before minutes of emulation
+    GRAVURE_CHECK(refuse_html(path, program.header(), options));  // before minutes of emulation
   }
-  {
-    GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
-    if (program->header().plan.path) {
-      if (!options.html.empty()) {
-        GRAVURE_TRY(const WrittenPathReport written,
-                    write_path_report(page_request(path, options), *program, options.images));
-        return print_path_report(written.verified, command);
-      }
-      return verify_path_file(path, options.images, command);
-    }
+  if (program.header().plan.path) {
+    return verify_path(program, path, options, command);
   }
-  GRAVURE_TRY(VerifiedProgram verified, verify_program_file(path, options.images, command));
+  GRAVURE_TRY(VerifiedProgram verified, verify_program_file(std::move(program), path, options.images, command));
   const VerifyReport report = verified.report;
-  const ProgramHeader& header = verified.program->header();
+  const ProgramHeader& header = verified.program.header();
   const bool every = options.every_revolution;
   const std::string text = command.json ? "" : text_of(report, header, every);
   const Json json = command.json ? json_of(report, header, every) : Json();

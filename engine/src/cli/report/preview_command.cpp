@@ -33,11 +33,13 @@ std::vector<double> shares_of(std::vector<double> values, double most) {
   return values;
 }
 
-Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const ProgramHeader& header,
+Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const GrvProgram& program,
                                           const Command& command) {
+  const ProgramHeader& header = program.header();
   ProgressBar bar("preview");
   report::LayerPicturesOptions pictures;
   pictures.memory_bytes = command.memory_bytes();
+  pictures.program_bytes = program.table_bytes();
   pictures.threads = command.threads;
   pictures.cancel = &cancel_token();
   pictures.progress = &bar;
@@ -50,22 +52,23 @@ Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const
   constexpr std::int64_t kMostCells = 4'000'000;  // of every worker, 8 bytes each
   pictures.most_cells = std::min(wanted.area(), kMostCells);
   pictures.most_shown_cells = pictures.most_cells;
-  return report::layer_pictures([&options] { return open_grv(options.program); }, emulated_devices(), pictures);
+  const auto programs = [&program]() -> Result<std::unique_ptr<LineSource>> { return program.reader(); };
+  return report::layer_pictures(programs, emulated_devices(), pictures);
 }
 
 Result<int> run_preview(const PreviewArguments& options, const Command& command) {
-  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program), Writes::preview));
+  GRAVURE_TRY(const GrvProgram program, GrvProgram::open(options.program, command.memory_bytes()));
+  const ProgramHeader& header = program.header();
+  GRAVURE_CHECK(refuse_overwrite(options.output, inputs_of_program(options.program, header), Writes::preview));
   GRAVURE_CHECK(check_png_name(options.output));
-  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
-  const ProgramHeader& header = program->header();
   if (header.plan.path) {
     return options.layer ? Error{ErrorCode::bad_argument,
                                  options.program + ": follows a path and has no layers; leave --layer out"}
-                         : preview_path(*program, options.output, options.width, command);
+                         : preview_path(*program.reader(), options.output, options.width, command);
   }
   GRAVURE_CHECK(check_drawable(header, options.program));
   GRAVURE_TRY(const Job job, parse_job(header.job_text, header.job_path));
-  GRAVURE_TRY(const report::LayerPictures pictures, pictures_of(options, header, command));
+  GRAVURE_TRY(const report::LayerPictures pictures, pictures_of(options, program, command));
   const bool depth = !options.layer;
   // One layer is shown as what fired, all of them as what is left of the surface.
   const std::optional<report::PulseRemoval> removal = depth ? report::pulse_removal(job.laser) : std::nullopt;

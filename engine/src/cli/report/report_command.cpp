@@ -2,8 +2,8 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gravure/formats/grv.hpp"
@@ -31,28 +31,23 @@ std::string verdict_text(const std::string& page, std::int64_t bytes, const char
 }
 
 /// Before the work of verifying: is there such a line?
-Result<void> check_line(const ReportRequest& request) {
-  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(request.program));
-  GRAVURE_CHECK(check_drawable(program->header(), request.program));
-  const Plan& plan = program->header().plan;
+Result<void> check_line(const ReportRequest& request, const ProgramHeader& header) {
+  GRAVURE_CHECK(check_drawable(header, request.program));
+  const Plan& plan = header.plan;
   GRAVURE_CHECK(check_index("--revolution", request.revolution, plan.job.revolutions));
   return check_index("--line", request.line.value_or(0), plan.rotary.lines_per_revolution);
 }
 
-/// The page of a program that follows a path; nullopt: it follows none.
-Result<std::optional<int>> run_path_report(const ReportArguments& options, const Command& command) {
+/// The page of a program that follows a path.
+Result<int> run_path_report(LineSource& program, const ReportArguments& options, const Command& command) {
   const ReportRequest& request = options.request;
-  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(request.program));
-  if (!program->header().plan.path) {
-    return std::optional<int>();
-  }
   if (request.line || request.revolution != 0) {
     return Error{ErrorCode::bad_argument,
                  request.program +
                      ": follows a path: it has no revolutions and lines to show; leave --revolution and "
                      "--line out"};
   }
-  GRAVURE_TRY(const WrittenPathReport written, write_path_report(request, *program, options.images));
+  GRAVURE_TRY(const WrittenPathReport written, write_path_report(request, program, options.images));
   const std::vector<std::string>& violations = written.verified.violations;
   if (command.json) {
     print_json({{"page", request.output},
@@ -66,18 +61,19 @@ Result<std::optional<int>> run_path_report(const ReportArguments& options, const
   } else {
     print(verdict_text(request.output, written.bytes, "", violations));
   }
-  return std::optional<int>(violations.empty() ? kDone : kLimitViolated);
+  return violations.empty() ? kDone : kLimitViolated;
 }
 
 Result<int> run_report(const ReportArguments& options, const Command& command) {
   const ReportRequest& request = options.request;
-  GRAVURE_CHECK(refuse_overwrite(request.output, inputs_of_program(request.program)));
-  GRAVURE_TRY(const std::optional<int> of_path, run_path_report(options, command));
-  if (of_path) {
-    return *of_path;
+  GRAVURE_TRY(GrvProgram program, GrvProgram::open(request.program, command.memory_bytes()));
+  GRAVURE_CHECK(refuse_overwrite(request.output, inputs_of_program(request.program, program.header())));
+  if (program.header().plan.path) {
+    return run_path_report(*program.reader(), options, command);
   }
-  GRAVURE_CHECK(check_line(request));
-  GRAVURE_TRY(VerifiedProgram verified, verify_program_file(request.program, options.images, command));
+  GRAVURE_CHECK(check_line(request, program.header()));
+  GRAVURE_TRY(VerifiedProgram verified,
+              verify_program_file(std::move(program), request.program, options.images, command));
   const std::vector<std::string> violations = verified.report.violations;
   GRAVURE_TRY(const WrittenReport written, write_report(request, std::move(verified), command));
   if (command.json) {

@@ -23,7 +23,8 @@ Result<void> check_drawable(const ProgramHeader& header, const std::string& path
 }
 
 Result<WrittenReport> write_report(const ReportRequest& request, VerifiedProgram verified, const Command& command) {
-  const ProgramHeader& header = verified.program->header();
+  const ProgramHeader& header = verified.program.header();
+  const std::unique_ptr<LineSource> program = verified.program.reader();
   GRAVURE_CHECK(check_drawable(header, request.name));
   report::ReportData data;
   data.generator = std::string("gravure ") + GRAVURE_VERSION;
@@ -32,17 +33,19 @@ Result<WrittenReport> write_report(const ReportRequest& request, VerifiedProgram
   WrittenReport written;
   written.line = request.line.value_or(0);
   if (!request.line) {
-    GRAVURE_TRY(written.line, report::first_firing_line(*verified.program, request.revolution, 0));
+    GRAVURE_TRY(written.line, report::first_firing_line(*program, request.revolution, 0));
   }
-  GRAVURE_TRY(data.line, report::line_view(*verified.program, request.revolution, written.line));
+  GRAVURE_TRY(data.line, report::line_view(*program, request.revolution, written.line));
   Result<report::LayerPictures> pictures = [&] {
     ProgressBar bar("layers");
     report::LayerPicturesOptions options;
     options.memory_bytes = command.memory_bytes();
+    options.program_bytes = verified.program.table_bytes();
     options.threads = command.threads;
     options.cancel = &cancel_token();
     options.progress = &bar;
-    return report::layer_pictures([&request] { return open_grv(request.program); }, emulated_devices(), options);
+    const auto programs = [&verified]() -> Result<std::unique_ptr<LineSource>> { return verified.program.reader(); };
+    return report::layer_pictures(programs, emulated_devices(), options);
   }();
   GRAVURE_TRY(data.pictures, std::move(pictures));
   data.seam = report::seam_series(verified.report, header.plan);

@@ -97,10 +97,4 @@ Result<PathReport> judge_path_file(LineSource& program, const std::string& path,
   return judge_path_program(program, options, evidence.violations, evidence.notes);
 }
 
-Result<int> verify_path_file(const std::string& path, const std::string& folder, const Command& command) {
-  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
-  GRAVURE_TRY(const PathReport report, judge_path_file(*program, path, folder));
-  return print_path_report(report, command);
-}
-
 }  // namespace gravure::cli

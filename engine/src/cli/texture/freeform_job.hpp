@@ -29,12 +29,9 @@ struct FreeformOutputs {
 /// `compile JOB` and `texture compile`, which says what a job would.
 Result<int> compile_freeform_job(const FreeformJob& job, const FreeformOutputs& outputs, const Command& command);
 
-/// Judges a program that follows a path, as `verify` does; `landed` is told of every pulse.
+/// Judges a program that follows a path, as `verify` does: by what the freeform job that it was made from asks for,
+/// where its sources are at hand, at the job's paths or below `folder`. `landed` is told of every pulse.
 Result<PathReport> judge_path_file(LineSource& program, const std::string& path, const std::string& folder,
                                    const std::function<Result<void>(const LandedPulse&)>& landed = {});
-
-/// `verify PROGRAM` of one that was made from a freeform job, with what the job asks for where its sources are at hand,
-/// and of any other that follows a path. Sources are sought at the job's paths, or below `folder`.
-Result<int> verify_path_file(const std::string& path, const std::string& folder, const Command& command);
 
 }  // namespace gravure::cli

@@ -3,11 +3,16 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "gravure/core/error.hpp"
 #include "gravure/core/program.hpp"
 
 namespace gravure {
+
+namespace grv {
+struct OpenedProgram;
+}
 
 /// How a program file is stored. docs/formats/grv.md describes the file, docs/decisions/grv_integrity.md its checksums.
 struct GrvOptions {
@@ -40,6 +45,24 @@ Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64
 /// cut off, lengthened or altered (naming the first missing chunk where it is cut), version_mismatch for a format
 /// version above kNewestFormatVersion.
 Result<std::unique_ptr<LineSource>> open_grv(const std::string& path);
+
+/// A program opened once for any number of readers: what is known of it, its tables of chunks above all, is held once.
+class GrvProgram {
+ public:
+  /// open_grv(). Where the tables alone would not fit `memory_bytes`, out_of_range with what they take, before they are
+  /// read.
+  static Result<GrvProgram> open(const std::string& path, std::int64_t memory_bytes);
+
+  const ProgramHeader& header() const noexcept;
+  /// A reader, for one thread. It may live longer than this.
+  std::unique_ptr<LineSource> reader() const;
+  /// What the tables take, however many readers there are.
+  std::int64_t table_bytes() const noexcept;
+
+ private:
+  explicit GrvProgram(std::shared_ptr<const grv::OpenedProgram> opened) : opened_(std::move(opened)) {}
+  std::shared_ptr<const grv::OpenedProgram> opened_;
+};
 
 /// A program, or a shard of one (ProgramHeader::shard), and how its bits are stored.
 struct GrvPart {
