@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -11,6 +12,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "log.hpp"
@@ -50,6 +52,54 @@ int report(const Error& error, bool json) {
     gravure::cli::print_json({{"error", {{"code", gravure::error_code_name(error.code)}, {"message", error.message}}}});
   }
   return gravure::exit_status(error.code);
+}
+
+struct Verb {
+  std::string_view name;
+  void (*add)(CLI::App&, Command&);
+};
+
+/// In the order in which --help shows them.
+constexpr std::array<Verb, 26> kVerbs = {{
+    {"init", gravure::cli::add_init},
+    {"plan", gravure::cli::add_plan},
+    {"suggest", gravure::cli::add_suggest},
+    {"slice", gravure::cli::add_slice},
+    {"compile", gravure::cli::add_compile},
+    {"merge", gravure::cli::add_merge},
+    {"inspect", gravure::cli::add_inspect},
+    {"dump", gravure::cli::add_dump},
+    {"unroll", gravure::cli::add_unroll},
+    {"verify", gravure::cli::add_verify},
+    {"report", gravure::cli::add_report},
+    {"preview", gravure::cli::add_preview},
+    {"emulate", gravure::cli::add_emulate},
+    {"run", gravure::cli::add_run},
+    {"exposure", gravure::cli::add_exposure},
+    {"trajectory", gravure::cli::add_trajectory},
+    {"export", gravure::cli::add_export},
+    {"calibrate", gravure::cli::add_calibrate},
+    {"register", gravure::cli::add_register},
+    {"devices", gravure::cli::add_devices},
+    {"motion", gravure::cli::add_motion_command},
+    {"texture", gravure::cli::add_texture},
+    {"zones", gravure::cli::add_zones},
+    {"chart", gravure::cli::add_chart_command},
+    {"completion", gravure::cli::add_completion},
+    {"man", gravure::cli::add_man},
+}};
+
+/// The verb that is asked for, alone: adding all of them costs every run a millisecond. Where none of them is, all,
+/// so that --help and errors show them; `completion` and `man` tell of all, too.
+void add_verbs(CLI::App& app, Command& command, const std::vector<std::string>& arguments) {
+  const std::string_view asked = arguments.empty() ? "" : std::string_view(arguments.front());
+  const bool one = asked != "completion" && asked != "man" &&
+                   std::any_of(kVerbs.begin(), kVerbs.end(), [&](const Verb& verb) { return verb.name == asked; });
+  for (const Verb& verb : kVerbs) {
+    if (!one || verb.name == asked) {
+      verb.add(app, command);
+    }
+  }
 }
 
 /// "gravure --help", or that of the verb that was given.
@@ -144,32 +194,7 @@ int run(int argc, char** argv) {
   app.footer(
       "Exit status: 0 done and within limits, 1 a limit is violated, 2 bad usage, job or input file,\n"
       "3 device or I/O failure, 4 interrupted.");
-  gravure::cli::add_init(app, command);
-  gravure::cli::add_plan(app, command);
-  gravure::cli::add_suggest(app, command);
-  gravure::cli::add_slice(app, command);
-  gravure::cli::add_compile(app, command);
-  gravure::cli::add_merge(app, command);
-  gravure::cli::add_inspect(app, command);
-  gravure::cli::add_dump(app, command);
-  gravure::cli::add_unroll(app, command);
-  gravure::cli::add_verify(app, command);
-  gravure::cli::add_report(app, command);
-  gravure::cli::add_preview(app, command);
-  gravure::cli::add_emulate(app, command);
-  gravure::cli::add_run(app, command);
-  gravure::cli::add_exposure(app, command);
-  gravure::cli::add_trajectory(app, command);
-  gravure::cli::add_export(app, command);
-  gravure::cli::add_calibrate(app, command);
-  gravure::cli::add_register(app, command);
-  gravure::cli::add_devices(app, command);
-  gravure::cli::add_motion_command(app, command);
-  gravure::cli::add_texture(app, command);
-  gravure::cli::add_zones(app, command);
-  gravure::cli::add_chart_command(app, command);
-  gravure::cli::add_completion(app, command);
-  gravure::cli::add_man(app, command);
+  add_verbs(app, command, arguments);
   gravure::cli::add_log_level(app);  // after all verbs: each gets it
   try {
     refuse_ambiguous(app, arguments);

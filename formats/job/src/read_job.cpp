@@ -1,5 +1,7 @@
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -42,9 +44,13 @@ Result<std::string> read_job_text(const std::string& path) {
   if (!file) {
     return Error{ErrorCode::bad_file, path + ": cannot be opened: " + reason() + "; give the path of a job file"};
   }
-  // One byte beyond what was promised tells a file that grew meanwhile.
-  std::string text(kMaxJobBytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  // As much as there is, to one byte beyond the limit, which tells a file that grew meanwhile.
+  std::string text;
+  std::array<char, 16384> block;
+  while (const std::size_t got =
+             std::fread(block.data(), 1, std::min(block.size(), kMaxJobBytes + 1 - text.size()), file.get())) {
+    text.append(block.data(), got);
+  }
   if (std::ferror(file.get()) != 0) {
     return Error{ErrorCode::io, path + ": reading broke off: " + reason()};
   }
