@@ -1,0 +1,45 @@
+# Each shared library costs every verb a tenth of a millisecond before it begins, SQLite four, and Debian's shared HDF5, which loads 36 more for
+# files in the cloud (curl, Kerberos, LDAP), 8 ms. Where the archive beside one links, our build takes it. Who uses our libraries from outside
+# chooses for himself. What reads pictures of others (libtiff, libpng) stays shared: its fixes must come without building anew.
+include(CheckCSourceCompiles)
+
+# gravure_take_archive(<imported target> <header> <call> [<what the archive needs>...])
+function(gravure_take_archive target header call)
+  set(property IMPORTED_LOCATION)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL INTERFACE_LIBRARY)  # of pkg-config
+    set(property INTERFACE_LINK_LIBRARIES)
+  endif()
+  get_target_property(shared ${target} ${property})
+  string(REGEX REPLACE "[.]so$" ".a" archive "${shared}")
+  if(NOT archive MATCHES "^[^;]*[.]a$" OR NOT EXISTS "${archive}")
+    return()
+  endif()
+  get_target_property(CMAKE_REQUIRED_INCLUDES ${target} INTERFACE_INCLUDE_DIRECTORIES)
+  if(NOT CMAKE_REQUIRED_INCLUDES)
+    set(CMAKE_REQUIRED_INCLUDES "")
+  endif()
+  set(CMAKE_REQUIRED_LIBRARIES ${archive} ${ARGN})
+  string(MAKE_C_IDENTIFIER "GRAVURE_ARCHIVE_LINKS_${target}" links)
+  check_c_source_compiles("#include <${header}>
+int main(void) { return (int)${call}; }" ${links})
+  if(${links} AND property STREQUAL IMPORTED_LOCATION)
+    set_target_properties(${target} PROPERTIES IMPORTED_LOCATION ${archive} INTERFACE_LINK_LIBRARIES "${ARGN}")
+  elseif(${links})
+    set_target_properties(${target} PROPERTIES INTERFACE_LINK_LIBRARIES "${archive};${ARGN}")
+  endif()
+endfunction()
+
+# What HDF5's archive needs of szip: two libraries more, unless they are archives as well.
+find_library(GRAVURE_SZ_ARCHIVE libsz.a)
+find_library(GRAVURE_AEC_ARCHIVE libaec.a)
+mark_as_advanced(GRAVURE_SZ_ARCHIVE GRAVURE_AEC_ARCHIVE)
+if(GRAVURE_SZ_ARCHIVE AND GRAVURE_AEC_ARCHIVE)
+  set(szip ${GRAVURE_SZ_ARCHIVE} ${GRAVURE_AEC_ARCHIVE})
+else()
+  set(szip sz)
+endif()
+gravure_take_archive(hdf5::hdf5 hdf5.h "H5open()" ${szip} z ${CMAKE_DL_LIBS} m)
+gravure_take_archive(SQLite::SQLite3 sqlite3.h "sqlite3_open(0, 0)" ${CMAKE_DL_LIBS} m)
+gravure_take_archive(PkgConfig::lz4 lz4.h "LZ4_versionNumber()")
+gravure_take_archive(PkgConfig::xxhash xxhash.h "XXH_versionNumber()")
