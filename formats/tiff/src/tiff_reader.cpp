@@ -167,7 +167,7 @@ class TileSource final : public BlockSource {
   std::vector<std::byte> tile_;
 };
 
-/// Uncompressed strips: rows straight from their places in the file.
+/// Uncompressed strips: rows straight from their places in the file, of all strips that stand there in a row at once.
 class PlainSource final : public BilevelSource {
  public:
   PlainSource(TiffHandle handle, ImageInfo info, bool lowest_bit_first)
@@ -177,15 +177,23 @@ class PlainSource final : public BilevelSource {
   Result<void> read_checked(std::int64_t first_row, std::int64_t row_count, std::byte* out) override {
     const std::int64_t end = first_row + row_count;
     for (std::int64_t row = first_row; row < end;) {
-      const std::int64_t strip = row / info_.rows_per_block;
-      const std::int64_t skip = row - strip * info_.rows_per_block;
-      const std::int64_t rows = std::min(info_.rows_per_block - skip, end - row);
-      const std::uint64_t offset = TIFFGetStrileOffset(tiff(), static_cast<std::uint32_t>(strip));
-      GRAVURE_CHECK(read_bytes(static_cast<std::int64_t>(offset) + skip * row_bytes_, rows * row_bytes_, row, out));
+      const std::int64_t offset = offset_of(row);
+      std::int64_t rows = std::min(rows_left_in_strip(row), end - row);
+      while (row + rows < end && offset_of(row + rows) == offset + rows * row_bytes_) {
+        rows += std::min(rows_left_in_strip(row + rows), end - row - rows);
+      }
+      GRAVURE_CHECK(read_bytes(offset, rows * row_bytes_, row, out));
       out += rows * row_bytes_;
       row += rows;
     }
     return {};
+  }
+
+  std::int64_t rows_left_in_strip(std::int64_t row) const { return info_.rows_per_block - row % info_.rows_per_block; }
+
+  std::int64_t offset_of(std::int64_t row) const {
+    const auto strip = static_cast<std::uint32_t>(row / info_.rows_per_block);
+    return static_cast<std::int64_t>(TIFFGetStrileOffset(tiff(), strip)) + row % info_.rows_per_block * row_bytes_;
   }
 
   Result<void> read_bytes(std::int64_t offset, std::int64_t bytes, std::int64_t row, std::byte* out) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <numeric>
 #include <random>
 
 namespace gravure::test {
@@ -50,8 +51,13 @@ void set_tags(TIFF* tiff, const Bits& bits, const TiffSpec& spec) {
 }
 
 void write_strips(TIFF* tiff, const Bits& bits, const TiffSpec& spec) {
-  std::uint32_t strip = 0;
-  for (std::int64_t row = 0; row < bits.height; row += spec.rows_per_block, ++strip) {
+  std::vector<std::uint32_t> strips(static_cast<std::size_t>((bits.height - 1) / spec.rows_per_block + 1));
+  std::iota(strips.begin(), strips.end(), 0U);
+  for (std::size_t i = 1; spec.strips_swapped && i + 1 < strips.size(); i += 3) {
+    std::swap(strips[i], strips[i + 1]);
+  }
+  for (const std::uint32_t strip : strips) {
+    const std::int64_t row = std::int64_t{strip} * spec.rows_per_block;
     const std::int64_t rows = std::min<std::int64_t>(spec.rows_per_block, bits.height - row);
     const auto from = bits.bytes.begin() + row * bits.row_size();
     std::vector<std::byte> copy(from, from + rows * bits.row_size());  // libtiff may reverse bits in place

@@ -45,6 +45,7 @@ struct TiffSpec {
   std::uint32_t group3_options = 0;
   std::uint32_t rows_per_block = 16;
   std::uint32_t tile_width = 0;  // 0: strips
+  bool strips_swapped = false;   // 0 2 1 3 5 4 6 8 7 ... in the file
   std::string mode = "w";        // "w8" BigTIFF, "wb" big endian
   double x_dots = 0;             // 0: no resolution
   double y_dots = 0;

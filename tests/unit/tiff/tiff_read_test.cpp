@@ -99,10 +99,15 @@ TEST(BilevelTiff, GivesTheSameRowsInPartsAsWhole) {
   std::mt19937 rng(seed);
   const TempFolder folder;
   const Bits bits = pattern(333, 101);
-  for (const std::uint32_t tile_width : {0U, 32U}) {
-    TiffSpec spec;
-    spec.compression = kLzw;
-    spec.tile_width = tile_width;
+  std::vector<TiffSpec> specs(4);
+  specs[0].compression = kLzw;
+  specs[1].compression = kLzw;
+  specs[1].tile_width = 32;
+  specs[2].compression = kNone;
+  specs[3].compression = kNone;
+  specs[3].strips_swapped = true;
+  for (const TiffSpec& spec : specs) {
+    SCOPED_TRACE(testing::Message() << "specification " << &spec - specs.data());
     write_tiff(folder / "p.tif", {bits}, spec);
     const auto source = BilevelTiffOpener().open(folder / "p.tif", 0);
     ASSERT_TRUE(source) << source.error().message;
