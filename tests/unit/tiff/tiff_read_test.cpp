@@ -2,6 +2,7 @@
 #include <tiffio.h>
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <random>
 
@@ -93,6 +94,16 @@ TEST(BilevelTiff, ReadsAnyWidthDownToOnePixel) {
   }
 }
 
+/// The rows asked for are those of `bits`.
+void expect_rows(ImageSource& source, const Bits& bits, std::int64_t first, std::int64_t count) {
+  Bits part{bits.width, count, std::vector<std::byte>(static_cast<std::size_t>(count * bits.row_size()))};
+  const auto done = source.read_rows(first, count, part.bytes);
+  ASSERT_TRUE(done) << done.error().message;
+  part = without_padding(std::move(part));
+  const auto from = bits.bytes.begin() + first * bits.row_size();
+  ASSERT_TRUE(std::equal(part.bytes.begin(), part.bytes.end(), from)) << first << " + " << count;
+}
+
 TEST(BilevelTiff, GivesTheSameRowsInPartsAsWhole) {
   const std::uint32_t seed = image_test_seed();
   SCOPED_TRACE(testing::Message() << "rerun with GRAVURE_TEST_SEED=" << seed);
@@ -115,14 +126,121 @@ TEST(BilevelTiff, GivesTheSameRowsInPartsAsWhole) {
       const auto first = static_cast<std::int64_t>(rng() % static_cast<std::uint64_t>(bits.height));
       const auto most = static_cast<std::uint64_t>(bits.height - first);
       const auto count = static_cast<std::int64_t>(trial == 0 ? most : rng() % (most + 1));
-      Bits part{bits.width, count, std::vector<std::byte>(static_cast<std::size_t>(count * bits.row_size()))};
-      const auto done = source.value()->read_rows(first, count, part.bytes);
-      ASSERT_TRUE(done) << done.error().message;
-      part = without_padding(std::move(part));
-      const auto from = bits.bytes.begin() + first * bits.row_size();
-      ASSERT_TRUE(std::equal(part.bytes.begin(), part.bytes.end(), from)) << first << " + " << count;
+      ASSERT_NO_FATAL_FAILURE(expect_rows(*source.value(), bits, first, count));
     }
   }
+}
+
+TEST(BilevelTiff, PutsTilesOfEveryWidthIntoRows) {
+  const TempFolder folder;
+  const Bits bits = pattern(1100, 150);
+  for (const std::uint16_t compression : {kNone, kLzw, kDeflate}) {
+    for (const std::uint32_t tile_width : {48U, 128U, 256U, 512U, 1024U, 2048U}) {
+      SCOPED_TRACE(codec_name(compression) + " tiles of " + std::to_string(tile_width));
+      TiffSpec spec;
+      spec.compression = compression;
+      spec.tile_width = tile_width;
+      spec.rows_per_block = 80;
+      spec.fill_order = FILLORDER_LSB2MSB;
+      write_tiff(folder / "t.tif", {bits}, spec);
+      const auto source = BilevelTiffOpener().open(folder / "t.tif", 0);
+      ASSERT_TRUE(source) << source.error().message;
+      for (const std::int64_t first : {0, 1, 79, 80, 149, 3}) {
+        expect_rows(*source.value(), bits, first, bits.height - first);
+        expect_rows(*source.value(), bits, first, 1);
+      }
+    }
+  }
+}
+
+TEST(BilevelTiff, ReadsBlocksThatAreLargeOrStoredInAnotherOrder) {
+  const std::uint32_t seed = image_test_seed();
+  SCOPED_TRACE(testing::Message() << "rerun with GRAVURE_TEST_SEED=" << seed);
+  std::mt19937 rng(seed);
+  const TempFolder folder;
+  const std::string path = folder / "r.tif";
+  constexpr std::uint32_t kRows = 100;
+  constexpr std::uint32_t kStrips = 5;
+  Bits bits{16384, kRows * kStrips, std::vector<std::byte>(std::size_t{2048} * kRows * kStrips)};
+  for (std::size_t i = 0; i < bits.bytes.size(); ++i) {  // every other strip does not shrink: 200 KiB as stored
+    const bool noise = i / (2048 * kRows) % 2 == 1;
+    bits.bytes[i] = static_cast<std::byte>(noise ? rng() >> 8U : i / 100);
+  }
+  TIFF* const tiff = TIFFOpen(path.c_str(), "w");
+  ASSERT_NE(tiff, nullptr);
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 16384);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, kRows * kStrips);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 1);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, kDeflate);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, kRows);
+  for (const std::uint32_t strip : {3U, 4U, 0U, 2U, 1U}) {
+    std::byte* const from = &bits.bytes[std::size_t{2048} * kRows * strip];
+    ASSERT_GT(TIFFWriteEncodedStrip(tiff, strip, from, 2048 * kRows), 0);
+  }
+  TIFFClose(tiff);
+  const auto source = BilevelTiffOpener().open(path, 0);
+  ASSERT_TRUE(source) << source.error().message;
+  for (const std::int64_t first : {0, 320, 50, 450, 199}) {
+    expect_rows(*source.value(), bits, first, bits.height - first);
+    expect_rows(*source.value(), bits, first, 10);
+  }
+}
+
+TEST(BilevelTiff, ReadsLargeStripsUpwardsBackwardsAndWithRowsLeftOut) {
+  const TempFolder folder;
+  const std::string path = folder / "large.tif";
+  const Bits bits = pattern(8003, 2700);
+  for (const std::uint16_t compression : {kPackBits, kLzw, kDeflate, kG4, kG3, kZstd}) {
+    for (const std::uint32_t rows : {1100U, 2700U}) {  // more than a MiB each
+      SCOPED_TRACE(codec_name(compression) + " strips of " + std::to_string(rows));
+      TiffSpec spec;
+      spec.compression = compression;
+      spec.rows_per_block = rows;
+      write_tiff(path, {bits}, spec);
+      const auto opened = BilevelTiffOpener().open(path, 0);
+      ASSERT_TRUE(opened) << opened.error().message;
+      ImageSource& source = *opened.value();
+      EXPECT_TRUE(source.info().random_access);
+      EXPECT_EQ(source.info().rows_per_block, rows);
+      EXPECT_GE(source.info().decoder_bytes, rows * bits.row_size());
+      expect_rows(source, bits, 0, 70);
+      expect_rows(source, bits, 70, 1);
+      expect_rows(source, bits, 1000, 200);
+      expect_rows(source, bits, 2400, 300);  // a strip passed over
+      expect_rows(source, bits, 1090, 20);
+      expect_rows(source, bits, 0, 2700);
+      const auto upwards = BilevelTiffOpener().open(path, 0);
+      expect_rows(*upwards.value(), bits, 0, 2700);
+      expect_rows(*upwards.value(), bits, 0, 2700);
+    }
+  }
+}
+
+TEST(BilevelTiff, TellsTheDamagedRowOfALargeStripAndRefusesItBackwardsToo) {
+  const TempFolder folder;
+  const std::string path = folder / "damaged.tif";
+  const Bits bits = pattern(8003, 1100);
+  TiffSpec spec;
+  spec.compression = kG4;
+  spec.rows_per_block = 1100;
+  write_tiff(path, {bits}, spec);
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(path) / 2));
+  file.write("\0\0\0\0\0\0\0\0", 8);
+  file.close();
+  const auto opened = BilevelTiffOpener().open(path, 0);
+  ASSERT_TRUE(opened) << opened.error().message;
+  ImageSource& source = *opened.value();
+  expect_rows(source, bits, 0, 64);
+  std::vector<std::byte> rows(bits.bytes.size());
+  const auto upwards = source.read_rows(64, 1036, rows);
+  ASSERT_FALSE(upwards);
+  EXPECT_EQ(upwards.error().code, ErrorCode::bad_file);
+  EXPECT_EQ(upwards.error().message.find("row 0:"), std::string::npos) << upwards.error().message;
+  const auto whole = source.read_rows(0, 1100, rows);
+  ASSERT_FALSE(whole);
+  EXPECT_EQ(whole.error().code, ErrorCode::bad_file);
 }
 
 TEST(BilevelTiff, ReadsAThousandPagesInAnyOrder) {

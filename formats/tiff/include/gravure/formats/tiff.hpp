@@ -13,7 +13,7 @@ namespace gravure {
 /// Limits that hold for every TIFF page, checked before anything of its size is allocated.
 inline constexpr std::int64_t kMaxTiffRowBytes = std::int64_t{64} << 20;    ///< one row
 inline constexpr std::int64_t kMaxTiffBlockBytes = std::int64_t{64} << 20;  ///< a row of tiles
-/// Compressed strips up to this size, stored and decoded, are decoded in one go; larger ones are streamed row by row.
+/// Compressed strips up to this size, stored and decoded, may be kept decoded; larger ones are only streamed.
 inline constexpr std::int64_t kMaxTiffStripBytes = std::int64_t{16} << 20;
 inline constexpr std::int64_t kMaxTiffPages = 1'000'000;
 
@@ -67,9 +67,10 @@ class BilevelTiffOpener final : public ImageOpener {
 
   /// Pages of any TIFF, bilevel or not.
   Result<std::int64_t> count_pages(const std::string& path) const override;
-  /// Uncompressed strips are read from their places, any rows in any order. Compressed ones of up to kMaxTiffStripBytes
-  /// are decoded whole and in any order, larger ones row by row and then upwards only (random_access = false; starting
-  /// again from row 0 is allowed). libtiff holds such a strip whole as it is stored: decoder_bytes says how much.
+  /// Uncompressed strips and tiles are read from their places. Compressed strips of up to kMaxTiffStripBytes are decoded
+  /// in any order: whole, or where they leave the cache and the codec streams (PackBits, LZW, fax), row by row until
+  /// somebody goes back. Larger ones are read row by row and then upwards only (random_access = false; starting again
+  /// from row 0 is allowed). libtiff holds such a strip whole as it is stored: decoder_bytes says how much.
   Result<std::unique_ptr<ImageSource>> open(const std::string& path, std::int64_t page) const override;
   /// The header of any page, bilevel or not, checked: every strip or tile lies inside the file.
   Result<TiffPageInfo> read_page_info(const std::string& path, std::int64_t page) const;

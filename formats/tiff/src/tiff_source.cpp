@@ -1,0 +1,84 @@
+#include "tiff_source.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace gravure {
+
+std::byte* StoredBlocks::get(int file, std::int64_t offset, std::int64_t bytes) {
+  if (bytes > kBytes) {
+    return nullptr;
+  }
+  if (offset < first_ || offset + bytes > end_) {
+    const bool goes_on = end_ > 0 && offset >= first_ && offset <= end_;  // whoever jumps about wants nothing else
+    if (!fetch(file, offset, goes_on ? kBytes : bytes) || offset + bytes > end_) {
+      return nullptr;
+    }
+  }
+  return held_.get() + (offset - first_);
+}
+
+bool StoredBlocks::fetch(int file, std::int64_t offset, std::int64_t bytes) {
+  if (!held_) {
+    held_ = std::make_unique_for_overwrite<std::byte[]>(static_cast<std::size_t>(kBytes));
+  }
+  const ssize_t got = ::pread(file, held_.get(), static_cast<std::size_t>(bytes), offset);
+  first_ = offset;
+  end_ = offset + std::max<std::int64_t>(0, got);
+  return got > 0;
+}
+
+BilevelSource::BilevelSource(TiffHandle handle, ImageInfo info)
+    : handle_(std::move(handle)), info_(std::move(info)), row_bytes_(row_bytes(SampleType::bit, info_.width)) {}
+
+Result<void> BilevelSource::read_rows(std::int64_t first_row, std::int64_t row_count, std::span<std::byte> out) {
+  if (first_row < 0 || row_count < 0 || row_count > info_.height || first_row > info_.height - row_count) {
+    return Error{ErrorCode::out_of_range, place() + "rows " + std::to_string(first_row) + " + " +
+                                              std::to_string(row_count) + " asked for: it has rows 0 to " +
+                                              std::to_string(info_.height - 1)};
+  }
+  if (out.size() < static_cast<std::size_t>(row_count * row_bytes_)) {
+    return Error{ErrorCode::bad_argument, place() + "the buffer for " + std::to_string(row_count) + " rows holds " +
+                                              std::to_string(out.size()) + " bytes, " +
+                                              std::to_string(row_count * row_bytes_) + " are needed"};
+  }
+  return read_checked(first_row, row_count, out.data());
+}
+
+Error BilevelSource::damage(std::int64_t row) const {
+  return {ErrorCode::bad_file, place() + "row " + std::to_string(row) +
+                                   ": the image data are damaged or truncated; copy or export the file again" +
+                                   handle_.messages().text()};
+}
+
+bool BilevelSource::decode_block(std::uint32_t number, std::byte* out, std::int64_t bytes) {
+  clear_messages();
+  const auto offset = static_cast<std::int64_t>(TIFFGetStrileOffset(tiff(), number));
+  const auto stored = static_cast<std::int64_t>(TIFFGetStrileByteCount(tiff(), number));
+  if (std::byte* const block = blocks_.get(TIFFFileno(tiff()), offset, stored)) {
+    return TIFFReadFromUserBuffer(tiff(), number, block, stored, out, bytes) == 1 && !said_anything();
+  }
+  const tmsize_t got = TIFFIsTiled(tiff()) != 0 ? TIFFReadEncodedTile(tiff(), number, out, bytes)
+                                                : TIFFReadEncodedStrip(tiff(), number, out, bytes);
+  return got == bytes && !said_anything();
+}
+
+std::int64_t BilevelSource::read_bytes(std::int64_t offset, std::int64_t bytes, std::byte* out,
+                                       bool lowest_bit_first) const {
+  std::int64_t done = 0;
+  while (done < bytes) {
+    const ssize_t got = ::pread(TIFFFileno(tiff()), out + done, static_cast<std::size_t>(bytes - done), offset + done);
+    if (got <= 0) {
+      break;
+    }
+    done += got;
+  }
+  if (lowest_bit_first) {
+    TIFFReverseBits(reinterpret_cast<std::uint8_t*>(out), done);
+  }
+  return done;
+}
+
+}  // namespace gravure
