@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "gravure/core/file_output.hpp"
 #include "gravure/formats/image_files.hpp"
@@ -204,28 +205,57 @@ std::string sha256_text_portable(std::string_view bytes) {
   return hash.finish();
 }
 
-Result<std::string> sha256_file(const std::string& path, const CancelToken* cancel) {
+struct Sha256File::State {
+  static constexpr std::size_t kBuffer = std::size_t{64} << 10;
+  std::string path;
+  std::unique_ptr<std::FILE, CloseFile> file;
+  Sha256 hash{fastest()};
+  std::unique_ptr<unsigned char[]> buffer = std::make_unique_for_overwrite<unsigned char[]>(kBuffer);
+};
+
+Sha256File::Sha256File(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Sha256File::Sha256File(Sha256File&&) noexcept = default;
+Sha256File& Sha256File::operator=(Sha256File&&) noexcept = default;
+Sha256File::~Sha256File() = default;
+
+Result<Sha256File> Sha256File::open(const std::string& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) {
     return Error{ErrorCode::bad_file, path + ": is no file that exists: nothing to hash"};
   }
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rbe"));
-  if (file == nullptr) {
+  auto state = std::make_unique<State>();
+  state->path = path;
+  state->file.reset(std::fopen(path.c_str(), "rbe"));
+  if (state->file == nullptr) {
     return open_error(path, errno);
   }
-  constexpr std::size_t kChunk = std::size_t{64} << 10;
-  const auto buffer = std::make_unique_for_overwrite<unsigned char[]>(kChunk);
-  Sha256 hash(fastest());
-  while (const std::size_t got = std::fread(buffer.get(), 1, kChunk, file.get())) {
-    hash.add(buffer.get(), got);
+  return Sha256File(std::move(state));
+}
+
+Result<std::size_t> Sha256File::next() {
+  const std::size_t got = std::fread(state_->buffer.get(), 1, State::kBuffer, state_->file.get());
+  if (std::ferror(state_->file.get()) != 0) {
+    return Error{ErrorCode::io, state_->path + ": cannot read: " + std::strerror(errno)};
+  }
+  state_->hash.add(state_->buffer.get(), got);
+  return got;
+}
+
+std::string Sha256File::finish() {
+  return state_->hash.finish();
+}
+
+Result<std::string> sha256_file(const std::string& path, const CancelToken* cancel) {
+  GRAVURE_TRY(Sha256File file, Sha256File::open(path));
+  while (true) {
+    GRAVURE_TRY(const std::size_t got, file.next());
+    if (got == 0) {
+      return file.finish();
+    }
     if (cancel != nullptr && cancel->cancelled()) {
       return Error{ErrorCode::cancelled, path + ": stopped before its SHA-256 was known"};
     }
   }
-  if (std::ferror(file.get()) != 0) {
-    return Error{ErrorCode::io, path + ": cannot read: " + std::strerror(errno)};
-  }
-  return hash.finish();
 }
 
 }  // namespace gravure

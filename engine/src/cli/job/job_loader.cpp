@@ -243,6 +243,20 @@ Result<void> fill_hashes(ProgramHeader& header, SourceHashes& hashes) {
   return {};
 }
 
+/// The bar, and the hashes in step with it.
+class CompileProgress final : public Progress {
+ public:
+  explicit CompileProgress(SourceHashes& hashes) : hashes_(hashes) {}
+  void update(std::int64_t done, std::int64_t total) override {
+    hashes_.go_on(done, total);
+    bar_.update(done, total);
+  }
+
+ private:
+  SourceHashes& hashes_;
+  ProgressBar bar_{"compile"};
+};
+
 }  // namespace
 
 Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& opener, const CompileRequest& request,
@@ -261,10 +275,10 @@ Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& o
   GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
               create_grv(request.output, static_cast<std::int64_t>(made.header.layers.size()),
                          loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), request.grv));
-  ProgressBar bar("compile");
+  CompileProgress progress(hashes);
   options.memory_bytes = command.memory_bytes();
   options.threads = command.threads;
-  options.progress = &bar;
+  options.progress = &progress;
   if (!request.resume) {
     options.complete_header = [&hashes](ProgramHeader& header) { return fill_hashes(header, hashes); };
   }

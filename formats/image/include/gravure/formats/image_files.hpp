@@ -51,4 +51,25 @@ std::string sha256_text(std::string_view bytes);
 /// asked to stop.
 Result<std::string> sha256_file(const std::string& path, const CancelToken* cancel = nullptr);
 
+/// The same, a part at a time.
+class Sha256File {
+ public:
+  static Result<Sha256File> open(const std::string& path);
+  Sha256File(Sha256File&&) noexcept;
+  Sha256File& operator=(Sha256File&&) noexcept;
+  Sha256File(const Sha256File&) = delete;
+  Sha256File& operator=(const Sha256File&) = delete;
+  ~Sha256File();
+
+  /// Takes in the next bytes; how many, 0 at the end of the file.
+  Result<std::size_t> next();
+  /// Of what was taken in; the last call.
+  std::string finish();
+
+ private:
+  struct State;
+  explicit Sha256File(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
 }  // namespace gravure
