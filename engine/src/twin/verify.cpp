@@ -85,10 +85,10 @@ class Verifier {
     constexpr std::int64_t kLibrary = std::int64_t{6} << 20;
     return kLibrary + 7 * lines_per_chunk_ * header_.line_bytes();
   }
-  /// What all of them hold together: the program's header and tables, and what is known and reported of revolutions.
+  /// What all of them hold together: the program's header and tables, and what is reported of revolutions.
   std::int64_t shared_bytes() const {
     const auto layers = static_cast<std::int64_t>(header_.layers.size());
-    return options_.program_bytes + 128 * layers + (kReportBytes + 12) * plan_.job.revolutions;
+    return options_.program_bytes + 128 * layers + (kReportBytes + 4) * plan_.job.revolutions;
   }
 
   /// How many workers the budget holds; their share for images is in image_bytes_.
