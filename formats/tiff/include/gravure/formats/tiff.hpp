@@ -67,10 +67,10 @@ class BilevelTiffOpener final : public ImageOpener {
 
   /// Pages of any TIFF, bilevel or not.
   Result<std::int64_t> count_pages(const std::string& path) const override;
-  /// Uncompressed strips and tiles are read from their places. Compressed strips of up to kMaxTiffStripBytes are decoded
-  /// in any order: whole, or where they leave the cache and the codec streams (PackBits, LZW, fax), row by row until
-  /// somebody goes back. Larger ones are read row by row and then upwards only (random_access = false; starting again
-  /// from row 0 is allowed). libtiff holds such a strip whole as it is stored: decoder_bytes says how much.
+  /// Uncompressed strips and tiles are read from their places. Compressed strips of up to kMaxTiffStripBytes are
+  /// decoded in any order: whole, or where they leave the cache and the codec streams (PackBits, LZW, fax), row by row
+  /// until somebody goes back. Larger ones are read row by row and then upwards only (random_access = false; starting
+  /// again from row 0 is allowed). libtiff holds such a strip whole as it is stored: decoder_bytes says how much.
   Result<std::unique_ptr<ImageSource>> open(const std::string& path, std::int64_t page) const override;
   /// The header of any page, bilevel or not, checked: every strip or tile lies inside the file.
   Result<TiffPageInfo> read_page_info(const std::string& path, std::int64_t page) const;
