@@ -54,6 +54,8 @@ class MemoryImages final : public ImageOpener {
 
   std::int64_t opened() const { return opened_; }
   std::int64_t rows_read() const { return rows_read_; }
+  /// Strips that readers which keep their latest one would have decoded.
+  std::int64_t blocks_decoded() const { return blocks_decoded_; }
 
  private:
   class Source final : public ImageSource {
@@ -77,6 +79,10 @@ class MemoryImages final : public ImageOpener {
       }
       next_row_ = first_row + row_count;
       parent_.rows_read_ += row_count;
+      for (std::int64_t row = first_row; row < first_row + row_count; ++row) {
+        parent_.blocks_decoded_ += row / image_.info.rows_per_block != kept_block_ ? 1 : 0;
+        kept_block_ = row / image_.info.rows_per_block;
+      }
       for (std::int64_t row = 0; row < row_count; ++row) {
         fill(first_row + row, out.subspan(static_cast<std::size_t>(row * bytes), static_cast<std::size_t>(bytes)));
       }
@@ -116,11 +122,13 @@ class MemoryImages final : public ImageOpener {
     const MemoryImages& parent_;
     const Image& image_;
     std::int64_t next_row_ = 0;
+    std::int64_t kept_block_ = -1;
   };
 
   std::map<std::pair<std::string, std::int64_t>, Image> images_;
   mutable std::atomic<std::int64_t> opened_{0};
   mutable std::atomic<std::int64_t> rows_read_{0};
+  mutable std::atomic<std::int64_t> blocks_decoded_{0};
 };
 
 }  // namespace gravure::test

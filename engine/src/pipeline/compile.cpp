@@ -37,17 +37,44 @@ struct Geometry {
   std::int64_t lines_of(std::int64_t chunk) const { return std::min(lines_per_chunk, lines - chunk * lines_per_chunk); }
 };
 
+struct Budget {
+  int threads;
+  std::int64_t panel_bytes;
+  std::int64_t ahead_bytes;
+};
+
+/// Chunks of rows, of a file that reads in any order, which a worker takes together. The strip that lies across two
+/// such groups is decoded by two workers, so groups are large beside strips; but there are enough of them for all
+/// workers to end together, and what waits for its turn in the writer has room there.
+std::int64_t chunks_at_once(const LayerStack& stack, const Geometry& geometry, const Budget& budget) {
+  constexpr std::int64_t kGroupsAWorker = 4;
+  constexpr std::int64_t kStrips = 8;  // decoded for each one that is decoded twice
+  if (budget.threads == 1) {
+    return 1;
+  }
+  const auto parts_of = [](std::int64_t whole, std::int64_t part) { return (whole + part - 1) / part; };
+  const std::int64_t groups_a_layer =
+      std::max<std::int64_t>(1, kGroupsAWorker * budget.threads / std::max<std::int64_t>(1, geometry.layers));
+  const std::int64_t many = kStrips * parts_of(stack.rows_per_block, geometry.lines_per_chunk);
+  const std::int64_t waiting = budget.ahead_bytes / (budget.threads * geometry.lines_per_chunk * geometry.line_bytes);
+  return std::max<std::int64_t>(1, std::min({parts_of(geometry.chunks_per_layer(), groups_a_layer), many, waiting}));
+}
+
 /// Layers are walked as interleaves_layers() says: those of one map, and helical revolutions, share their decoding.
 /// Files that only read forwards, and panels of columns, keep as many chunks together as one pass over the file yields.
 /// The order in which chunks are written follows from the images alone, never from the budget or the number of workers.
 class TaskList {
  public:
-  TaskList(const ProgramHeader& header, const LayerStack& stack, const Geometry& geometry, std::int64_t lines_per_pass)
+  TaskList(const ProgramHeader& header, const LayerStack& stack, const Geometry& geometry, const Budget& budget)
       : geometry_(geometry), by_chunks_(interleaves_layers(header)) {
     const std::int64_t all = geometry.chunks_per_layer();
+    const std::int64_t lines_per_pass = LayerReader::lines_per_pass(stack, budget.panel_bytes);
     // A panel starts at a whole byte, up to 7 lines before the first one asked for.
     const std::int64_t fit = stack.lines_along == LinesAlong::columns ? lines_per_pass - 7 : lines_per_pass;
-    group_ = lines_per_pass >= geometry.lines ? all : std::clamp<std::int64_t>(fit / geometry.lines_per_chunk, 1, all);
+    const std::int64_t least = stack.lines_along == LinesAlong::rows ? chunks_at_once(stack, geometry, budget) : 1;
+    group_ = lines_per_pass >= geometry.lines
+                 ? all
+                 : std::clamp<std::int64_t>(std::max(least, fit / geometry.lines_per_chunk), 1, all);
     group_ = by_chunks_ ? 1 : group_;
     groups_ = (all + group_ - 1) / group_;
   }
@@ -84,12 +111,6 @@ std::int64_t program_bytes(std::int64_t layers, std::int64_t lines, std::int64_t
   const std::int64_t chunks = (lines + lines_per_chunk - 1) / std::max<std::int64_t>(1, lines_per_chunk);
   return kLibrary + kTablesPerChunk * chunks * layers;
 }
-
-struct Budget {
-  int threads;
-  std::int64_t panel_bytes;
-  std::int64_t ahead_bytes;
-};
 
 std::string whole_mib(std::int64_t bytes) {
   return std::to_string((bytes + kMiB - 1) / kMiB) + " MiB";
@@ -133,7 +154,7 @@ class Compiler {
         options_(options),
         geometry_(geometry),
         budget_(budget),
-        tasks_(header, stack, geometry, LayerReader::lines_per_pass(stack, budget.panel_bytes)),
+        tasks_(header, stack, geometry, budget),
         writer_(sink, budget.ahead_bytes) {}
 
   Result<void> run() {

@@ -97,6 +97,7 @@ void learn_images(LayerStack& stack, const ImageOpener& opener) {
     stack.samples = first ? info.samples : stack.samples;
     first = false;
     random_access = random_access && info.random_access;
+    stack.rows_per_block = std::max(stack.rows_per_block, info.rows_per_block);
     most = std::max(most, info.decoder_bytes);
   }
   stack.random_access = random_access;

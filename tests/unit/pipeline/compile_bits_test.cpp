@@ -93,6 +93,26 @@ TEST(Compile, ReadsAFileThatOnlyRunsUpwardsOnce) {
   }
 }
 
+TEST(Compile, DecodesFewStripsTwiceWithManyWorkers) {
+  constexpr std::int64_t kLayers = 10;
+  constexpr std::int64_t kLines = 4600;
+  for (const int threads : {1, 2, 3}) {
+    for (const std::int64_t rows : {std::int64_t{64}, std::int64_t{1000}, kLines}) {
+      SCOPED_TRACE(testing::Message() << threads << " threads, strips of " << rows << " rows");
+      MemoryImages images;
+      const LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::rows, kLines, 20, kLayers, 3);
+      for (const LayerInput& layer : stack.layers) {
+        images.at(layer.path).info.rows_per_block = rows;
+      }
+      const ProgramHeader header = header_for(stack, true);
+      ASSERT_TRUE(compile_stack(header, stack, images, 100, {.threads = threads}).result);
+      const std::int64_t strips = kLayers * ((kLines + rows - 1) / rows);
+      EXPECT_GE(images.blocks_decoded(), strips);
+      EXPECT_LE(images.blocks_decoded(), threads == 1 || rows == kLines ? strips : strips + strips / 8 + kLayers);
+    }
+  }
+}
+
 TEST(Compile, StartsAFileThatOnlyRunsUpwardsAgainForTheNextPanel) {
   MemoryImages images;
   LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::columns, 500, 3000, 2, 3);

@@ -30,7 +30,8 @@ struct LayerStack {
   std::int64_t pixels = 0;  ///< of every line
   TileGrid tiles;           ///< a layer is its image so many times side by side
   SampleType samples = SampleType::bit;
-  bool random_access = true;  ///< false: one of the files must be read from its first row on
+  bool random_access = true;        ///< false: one of the files must be read from its first row on
+  std::int64_t rows_per_block = 1;  ///< of the highest strips or tiles among the images
   /// The most that a reader of one of the images holds (ImageInfo). Left out: found by opening each of them.
   std::optional<std::int64_t> decoder_bytes;
   LinesAlong lines_along = LinesAlong::rows;
@@ -46,8 +47,9 @@ struct LayerStack {
   std::shared_ptr<ColumnSpills> spills;  ///< of images too large to turn over in memory; none: decoded many times
 };
 
-/// Fills in what the images say of themselves: samples, random_access and decoder_bytes of all distinct ones that open,
-/// and lets readers share temporary files (`spills`). Those that do not open are passed over: read_lines() says why.
+/// Fills in what the images say of themselves: samples, random_access, rows_per_block and decoder_bytes of all
+/// distinct ones that open, and lets readers share temporary files (`spills`). Those that do not open are passed over:
+/// read_lines() says why.
 void learn_images(LayerStack& stack, const ImageOpener& opener);
 
 /// Reads the lines of a stack in bounded memory: rows straight from the file, columns by way of panels (as many columns

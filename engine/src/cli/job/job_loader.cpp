@@ -221,6 +221,7 @@ Compilation prepare_compilation(const LoadedJob& loaded, const CompileRequest& r
   for (const StackImage& image : images.images) {
     made.stack.decoder_bytes =
         std::max(*made.stack.decoder_bytes, tiled_info(image.info, made.stack.tiles).decoder_bytes);
+    made.stack.rows_per_block = std::max(made.stack.rows_per_block, image.info.rows_per_block);
   }
   made.stack.random_access = std::all_of(images.images.begin(), images.images.end(),
                                          [](const StackImage& image) { return image.info.random_access; });
