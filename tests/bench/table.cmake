@@ -1,5 +1,7 @@
 find_package(TIFF REQUIRED)
-add_executable(gravure_table_step ${CMAKE_CURRENT_LIST_DIR}/table_step.cpp)
+set(table_sources table_growth.cpp table_measure.cpp table_pictures.cpp table_slices.cpp table_step.cpp table_steps.cpp)
+list(TRANSFORM table_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
+add_executable(gravure_table_step ${table_sources})
 target_link_libraries(gravure_table_step PRIVATE gravure::pipeline gravure::sync gravure::grv gravure::image gravure::tiff
   TIFF::TIFF gravure_build benchmark::benchmark)
 foreach(peer leptonica vips)

@@ -1,3 +1,4 @@
+#include <functional>
 #include <optional>
 
 #include "gravure/core/units.hpp"
@@ -56,36 +57,36 @@ TEST(CompileFault, OfTheSinkTravels) {
   }
 }
 
-TEST(CompileFault, OfCompletingTheHeaderTravels) {
+/// A small stack compiled into `program`, its header completed by `complete`.
+Result<ProgramHeader> compile_and(MemoryProgram& program,
+                                  const std::function<Result<void>(ProgramHeader& header)>& complete) {
   MemoryImages images;
   const LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::rows, 60, 40, 4, 1);
-  MemoryProgram program;
   program.lines_per_chunk = 3;
   MemorySink sink(program);
   CompileOptions options;
-  options.complete_header = [](ProgramHeader& /*header*/) -> Result<void> {
+  options.complete_header = complete;
+  return compile(header_for(stack, true), stack, images, sink, options);
+}
+
+TEST(CompileFault, OfCompletingTheHeaderTravels) {
+  MemoryProgram program;
+  const Result<ProgramHeader> failed = compile_and(program, [](ProgramHeader& /*header*/) -> Result<void> {
     return Error{ErrorCode::io, "the hash is not to be had"};
-  };
-  const Result<ProgramHeader> failed = compile(header_for(stack, true), stack, images, sink, options);
+  });
   ASSERT_FALSE(failed);
   EXPECT_EQ(failed.error().message, "the hash is not to be had");
   EXPECT_EQ(program.finished, 0);
 }
 
 TEST(Compile, CompletesTheHeaderWhenEveryChunkIsPut) {
-  MemoryImages images;
-  const LayerStack stack = random_stack(images, SampleType::bit, LinesAlong::rows, 60, 40, 4, 1);
   MemoryProgram program;
-  program.lines_per_chunk = 3;
-  MemorySink sink(program);
-  CompileOptions options;
-  options.complete_header = [&](ProgramHeader& header) -> Result<void> {
+  const Result<ProgramHeader> made = compile_and(program, [&](ProgramHeader& header) -> Result<void> {
     EXPECT_EQ(program.finished, 0);
     EXPECT_GT(header.layers.back().fired_pixels, 0) << "chunks are counted by then";
     header.job_text = "found late";
     return {};
-  };
-  const Result<ProgramHeader> made = compile(header_for(stack, true), stack, images, sink, options);
+  });
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made.value().job_text, "found late");
   EXPECT_EQ(program.header.job_text, "found late");
