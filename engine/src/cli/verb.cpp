@@ -18,12 +18,8 @@ CLI::App* add_verb(CLI::App& app, Command& command, const std::string& name, con
 }
 
 void add_work_options(CLI::App& verb, Command& command) {
-  verb.add_option("--memory", command.memory_mib, "Budget for all buffers in MiB")
-      ->check(integer_from(1, std::uint64_t{1} << 20))
-      ->capture_default_str();
-  verb.add_option("--threads", command.threads, "Workers; 0: one for each processor")
-      ->check(integer_from(0, 1024))
-      ->capture_default_str();
+  add_integer(verb, "--memory", command.memory_mib, "Budget for all buffers in MiB", 1, std::uint64_t{1} << 20);
+  add_integer(verb, "--threads", command.threads, "Workers; 0: one for each processor", 0, 1024);
 }
 
 CLI::Validator integer_from(std::int64_t least, std::uint64_t most) {

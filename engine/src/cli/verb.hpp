@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
@@ -41,9 +42,23 @@ CLI::App* add_verb(CLI::App& app, Command& command, const std::string& name, con
 /// Adds --memory and --threads to a verb that works on images.
 void add_work_options(CLI::App& verb, Command& command);
 
+/// What a verb does with its options, once they are read.
+template <class Options, class Run>
+void set_run(CLI::App& verb, Command& command, const std::shared_ptr<Options>& options, Run run) {
+  verb.callback([&command, options, run] {
+    command.run = [&command, options, run]() -> Result<int> { return run(*options, command); };
+  });
+}
+
 /// Refuses what is no integer from `least` to `most`. Without it an option takes "" for 0 and cuts a huge number.
 CLI::Validator integer_from(std::int64_t least, std::uint64_t most);
 inline constexpr std::uint64_t kMostIndex = std::uint64_t{1} << 62;  ///< for revolutions and lines, checked later
+/// Adds an option that takes an integer from `least` to `most`; help shows what it is without.
+template <class Integer>
+CLI::Option* add_integer(CLI::App& verb, const std::string& name, Integer& value, const std::string& text,
+                         std::int64_t least, std::uint64_t most) {
+  return verb.add_option(name, value, text)->check(integer_from(least, most))->capture_default_str();
+}
 
 /// The exact value of a decimal given to an option; an error names the option.
 Result<Rational> decimal_option(const std::string& option, const std::string& text);

@@ -180,9 +180,8 @@ void add_chart_command(CLI::App& app, Command& command) {
       add_chart(*charts, command, "bidirectional",
                 "How far lines running back lie beside the others, at several scan speeds", bidirectional_chart);
   CLI::App* verb = charts->get_subcommand("bidirectional");
-  verb->add_option("--offset-ticks", bidirectional->chart.offset_ticks, "Bidirectional offset to try, in FPGA ticks")
-      ->check(integer_from(-1'000'000'000, 1'000'000'000))
-      ->capture_default_str();
+  add_integer(*verb, "--offset-ticks", bidirectional->chart.offset_ticks, "Bidirectional offset to try, in FPGA ticks",
+              -1'000'000'000, 1'000'000'000);
   verb->add_option(
           "--speed-percent", bidirectional->chart.speeds,
           "Scan speeds, each a job of its own, in percent of the job's; 100 is always there (default 100 50 25)")
@@ -206,10 +205,8 @@ void add_chart_command(CLI::App& app, Command& command) {
       add_chart(*charts, command, "field", "Crosses all over the scan field, for `gravure calibrate`", field_chart);
   verb = charts->get_subcommand("field");
   verb->add_option("--field-mm", field->field_mm, "Side of the scan field (default: that of the job, or 30)");
-  verb->add_option("--columns", field->chart.columns, "Marks along U")
-      ->check(integer_from(2, 33))
-      ->capture_default_str();
-  verb->add_option("--rows", field->chart.rows, "Marks along V")->check(integer_from(2, 33))->capture_default_str();
+  add_integer(*verb, "--columns", field->chart.columns, "Marks along U", 2, 33);
+  add_integer(*verb, "--rows", field->chart.rows, "Marks along V", 2, 33);
 }
 
 }  // namespace gravure::cli

@@ -75,16 +75,11 @@ void add_calibrate(CLI::App& app, Command& command) {
   verb->add_option("-o,--output", options->output, "Field grid to write, for scanner.field_grid")->required();
   verb->add_option("--field-mm", options->field_mm, "Side of the field that the grid covers")->required();
   constexpr std::int64_t kFewest = 2;
-  verb->add_option("--columns", options->columns, "Nodes along U")
-      ->check(integer_from(kFewest, scan::kMostCalibrationNodes))
-      ->capture_default_str();
-  verb->add_option("--rows", options->rows, "Nodes along V")
-      ->check(integer_from(kFewest, scan::kMostCalibrationNodes))
-      ->capture_default_str();
+  add_integer(*verb, "--columns", options->columns, "Nodes along U", kFewest, scan::kMostCalibrationNodes);
+  add_integer(*verb, "--rows", options->rows, "Nodes along V", kFewest, scan::kMostCalibrationNodes);
   verb->add_option("--smoothing", options->smoothing, "Weight of bending against misfit, 1e-12 to 1")
       ->capture_default_str();
-  verb->callback(
-      [&command, options] { command.run = [&command, options] { return run_calibrate(*options, command); }; });
+  set_run(*verb, command, options, run_calibrate);
 }
 
 }  // namespace gravure::cli

@@ -164,7 +164,7 @@ void add_compile(CLI::App& app, Command& command) {
       ->excludes(revolutions);
   verb->add_flag("--resume", options->resume, "Leave an output that is there, whole and of this job, as it is");
   add_work_options(*verb, command);
-  verb->callback([&command, options] { command.run = [&command, options] { return run_compile(*options, command); }; });
+  set_run(*verb, command, options, run_compile);
 }
 
 }  // namespace gravure::cli

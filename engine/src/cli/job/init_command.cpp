@@ -133,7 +133,7 @@ void add_init(CLI::App& app, Command& command) {
       ->required()
       ->check(CLI::IsMember({"rotary", "helical", "flat", "freeform", "zones"}));
   verb->add_option("DIR", options->folder, "Folder to write to")->capture_default_str();
-  verb->callback([&command, options] { command.run = [&command, options] { return run_init(*options, command); }; });
+  set_run(*verb, command, options, run_init);
 }
 
 }  // namespace gravure::cli

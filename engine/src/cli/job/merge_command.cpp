@@ -42,7 +42,7 @@ void add_merge(CLI::App& app, Command& command) {
   verb->add_option("SHARD", options->shards, "Shards, in any order: together every revolution of the job once")
       ->required();
   verb->add_option("-o,--output", options->output, "Program file to write (.grv)")->required();
-  verb->callback([&command, options] { command.run = [&command, options] { return run_merge(*options, command); }; });
+  set_run(*verb, command, options, run_merge);
 }
 
 }  // namespace gravure::cli

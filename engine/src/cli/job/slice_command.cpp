@@ -170,7 +170,7 @@ void add_slice(CLI::App& app, Command& command) {
       ->check(CLI::IsMember({"white", "black"}));
   verb->add_option("--depth-min", options->depth_min, "Sample at the shallow end (default 0)");
   verb->add_option("--depth-max", options->depth_max, "Sample at the other end (default 255, 65535, or 1 for float)");
-  verb->callback([&command, options] { command.run = [&command, options] { return run_slice(*options, command); }; });
+  set_run(*verb, command, options, run_slice);
 }
 
 }  // namespace gravure::cli

@@ -120,18 +120,13 @@ void add_suggest(CLI::App& app, Command& command) {
   CLI::App* verb = add_verb(app, command, "suggest", "Nearest jobs whose seam closes exactly, and what each costs");
   const auto options = std::make_shared<SuggestArguments>();
   verb->add_option("JOB", options->job, "Job file")->required();
-  verb->add_option("--lines", options->tolerances.lines_per_revolution, "Lines per revolution, more or less")
-      ->check(integer_from(0, 1'000'000'000))
-      ->capture_default_str();
-  verb->add_option("--extra-slots", options->tolerances.extra_slots, "Slots a line may be longer")
-      ->check(integer_from(0, 1'000'000'000))
-      ->capture_default_str();
+  add_integer(*verb, "--lines", options->tolerances.lines_per_revolution, "Lines per revolution, more or less", 0,
+              1'000'000'000);
+  add_integer(*verb, "--extra-slots", options->tolerances.extra_slots, "Slots a line may be longer", 0, 1'000'000'000);
   verb->add_option("--pitch-percent", options->pitch_percent, "Most the line pitch may change")->capture_default_str();
   verb->add_option("--diameter-um", options->diameter_um, "Most the diameter may change")->capture_default_str();
-  verb->add_option("--most", options->tolerances.most_suggestions, "Suggestions at most")
-      ->check(integer_from(1, 1000))
-      ->capture_default_str();
-  verb->callback([&command, options] { command.run = [&command, options] { return run_suggest(*options, command); }; });
+  add_integer(*verb, "--most", options->tolerances.most_suggestions, "Suggestions at most", 1, 1000);
+  set_run(*verb, command, options, run_suggest);
 }
 
 }  // namespace gravure::cli

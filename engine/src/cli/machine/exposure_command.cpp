@@ -168,8 +168,7 @@ void add_exposure(CLI::App& app, Command& command) {
   verb->add_option("--program", options->program, "Program it ran (.grv); default: the one that run noted there");
   verb->add_option("-o,--output", options->output, "TIFF to write, a grey level a time: 0, 1, 2 ...")->required();
   add_work_options(*verb, command);
-  verb->callback(
-      [&command, options] { command.run = [&command, options] { return run_exposure(*options, command); }; });
+  set_run(*verb, command, options, run_exposure);
 }
 
 }  // namespace gravure::cli

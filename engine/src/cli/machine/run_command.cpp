@@ -260,9 +260,7 @@ void add_run(CLI::App& app, Command& command) {
                    "Bytes the board holds before lines run; without it half of its buffer, or the whole job")
       ->check(integer_from(1, std::uint64_t{1} << 40));
   verb->add_option("--journal", options->journal, "The journal; without it PROGRAM.journal");
-  verb->add_option("--memory", command.memory_mib, "Budget for what is read ahead in MiB")
-      ->check(integer_from(1, std::uint64_t{1} << 20))
-      ->capture_default_str();
+  add_integer(*verb, "--memory", command.memory_mib, "Budget for what is read ahead in MiB", 1, std::uint64_t{1} << 20);
   verb->callback([&command, options] {
     options->run.resume.uncertain =
         options->uncertain == "skip" ? session::UncertainPolicy::skip : session::UncertainPolicy::repeat;

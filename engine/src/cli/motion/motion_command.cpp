@@ -194,12 +194,10 @@ void add_search(CLI::App& parent, Command& command) {
   add_number(*verb, "--mode-error-percent", options->mode_error_percent, "Error of the modes in the worst case")
       ->capture_default_str();
   verb->add_flag("--no-grid", options->no_grid, "Leave out the complete published grids");
-  verb->add_option("--seed", options->seed, "Of the random starting points")
-      ->check(integer_from(0, std::numeric_limits<std::int64_t>::max()))
-      ->capture_default_str();
-  verb->add_option("--effort", options->effort, "Rounds with random starting points; one more is never worse")
-      ->check(integer_from(1, 1000))
-      ->capture_default_str();
+  add_integer(*verb, "--seed", options->seed, "Of the random starting points", 0,
+              std::numeric_limits<std::int64_t>::max());
+  add_integer(*verb, "--effort", options->effort, "Rounds with random starting points; one more is never worse", 1,
+              1000);
   add_output_options(*verb, options->output);
   verb->callback(
       [&command, options] { command.run = [&command, options] { return run_search(*options, command.json); }; });

@@ -83,9 +83,7 @@ void add_motion_identify(CLI::App& motion, Command& command) {
   verb->add_flag("--step", options->step,
                  "The axis starts to accelerate evenly at --start-s (else it rings down from there)");
   add_number(*verb, "--start-s", options->start_s, "Samples before are not used")->capture_default_str();
-  verb->add_option("--modes", options->modes, "How many; 0 lets the data choose")
-      ->check(integer_from(0, 4))
-      ->capture_default_str();
+  add_integer(*verb, "--modes", options->modes, "How many; 0 lets the data choose", 0, 4);
   add_move_options(*verb, options->move, false);
   add_output_options(*verb, options->output);
   verb->callback(

@@ -255,9 +255,7 @@ void add_motion_unreverse(CLI::App& motion, Command& command) {
                    "Reversals up to this go; no block moves by more, but for turns clear of --surface or --blade")
       ->check(number_from(1e-9, 1e6))
       ->required();
-  verb->add_option("--control-points", options->control_points, "Of each piece to begin with")
-      ->check(integer_from(8, 1'000'000))
-      ->capture_default_str();
+  add_integer(*verb, "--control-points", options->control_points, "Of each piece to begin with", 8, 1'000'000);
   verb->add_option("--shift-deg", options->shift_deg, "Of the published rule, which is shown for comparison")
       ->check(number_from(1e-6, 360))
       ->capture_default_str();

@@ -190,9 +190,7 @@ void add_trajectory(CLI::App& app, Command& command) {
   verb->add_option("--line", options->line, "Line of the revolution, from 0")
       ->required()
       ->check(integer_from(0, kMostIndex));
-  verb->add_option("--revolution", options->revolution, "Revolution (pass), from 0")
-      ->check(integer_from(0, kMostIndex))
-      ->capture_default_str();
+  add_integer(*verb, "--revolution", options->revolution, "Revolution (pass), from 0", 0, kMostIndex);
   verb->add_flag("--csv", options->csv, "CSV on standard output, which is the default");
   verb->add_flag("--ideal", options->ideal, "A scanner without lag and counts that goes along the planned path");
   verb->add_option("-o,--output", options->output, "Write the CSV to this file instead");

@@ -134,11 +134,9 @@ void add_preview(CLI::App& app, Command& command) {
   verb->add_option("-o,--output", options->output, "PNG to write (.png)")->required();
   verb->add_option("--layer", options->layer, "Layer of the image stack, from 0; else all of them as depth")
       ->check(integer_from(0, kMostIndex));
-  verb->add_option("--width", options->width, "Of the picture in pixels")
-      ->check(integer_from(64, 8'192))
-      ->capture_default_str();
+  add_integer(*verb, "--width", options->width, "Of the picture in pixels", 64, 8'192);
   add_work_options(*verb, command);
-  verb->callback([&command, options] { command.run = [&command, options] { return run_preview(*options, command); }; });
+  set_run(*verb, command, options, run_preview);
 }
 
 }  // namespace gravure::cli

@@ -100,9 +100,8 @@ void add_report(CLI::App& app, Command& command) {
   verb->add_option("PROGRAM", options->request.program, "Program file (.grv)")->required();
   verb->add_option("-o,--output", options->request.output, "HTML file to write")->required();
   verb->add_option("--images", options->images, "Folder with the images, where they are not at the job's paths");
-  verb->add_option("--revolution", options->request.revolution, "Revolution (pass) of the line whose timing is shown")
-      ->check(integer_from(0, kMostIndex))
-      ->capture_default_str();
+  add_integer(*verb, "--revolution", options->request.revolution, "Revolution (pass) of the line whose timing is shown",
+              0, kMostIndex);
   verb->add_option("--line", options->request.line, "That line; else the first of the revolution that fires")
       ->check(integer_from(0, kMostIndex));
   add_work_options(*verb, command);

@@ -128,7 +128,7 @@ void add_decompose(CLI::App& texture, Command& command) {
              "Look for a clamping, tilted by so many degrees at most, in which C turns slower");
   add_points_option(*verb, options->points);
   add_texture_memory(*verb, command);
-  verb->callback([&command, options] { command.run = [&command, options] { return decompose(*options, command); }; });
+  set_run(*verb, command, options, decompose);
 }
 
 }  // namespace

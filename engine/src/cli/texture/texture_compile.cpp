@@ -45,18 +45,12 @@ void add_texture_compile(CLI::App& texture, Command& command) {
   add_points_option(*verb, options->points);
   add_texture_memory(*verb, command);
   verb->add_option("--title", job.title, "What the program calls itself")->capture_default_str();
-  verb->add_option("--seed-hz", job.laser.seed_hz, "Seed pulses a second")
-      ->check(integer_from(1, 1'000'000'000'000))
-      ->capture_default_str();
-  verb->add_option("--pulse-divider", job.laser.pulse_divider, "Every so many seed pulses one is amplified")
-      ->check(integer_from(1, 65'535))
-      ->capture_default_str();
-  verb->add_option("--clock-multiplier", job.fpga.clock_multiplier, "FPGA ticks a seed pulse")
-      ->check(integer_from(1, 16))
-      ->capture_default_str();
+  add_integer(*verb, "--seed-hz", job.laser.seed_hz, "Seed pulses a second", 1, 1'000'000'000'000);
+  add_integer(*verb, "--pulse-divider", job.laser.pulse_divider, "Every so many seed pulses one is amplified", 1,
+              65'535);
+  add_integer(*verb, "--clock-multiplier", job.fpga.clock_multiplier, "FPGA ticks a seed pulse", 1, 16);
   add_length(*verb, "--landing-um", options->job.split.landing_um, 1e6, "Largest landing error that `verify` allows");
-  verb->callback(
-      [&command, options] { command.run = [&command, options] { return run_texture_compile(*options, command); }; });
+  set_run(*verb, command, options, run_texture_compile);
 }
 
 }  // namespace gravure::cli

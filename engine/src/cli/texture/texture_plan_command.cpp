@@ -87,10 +87,9 @@ void add_texture_plan(CLI::App& texture, Command& command) {
   add_points_option(*verb, options->points);
   add_texture_memory(*verb, command);
   verb->add_option("--trajectory", options->trajectory, "CSV of the set-points of all axes over time");
-  verb->add_option("--every", options->every, "Every how many servo periods --trajectory has a line")
-      ->check(integer_from(1, 1'000'000'000))
-      ->capture_default_str();
-  verb->callback([&command, options] { command.run = [&command, options] { return plan(*options, command); }; });
+  add_integer(*verb, "--every", options->every, "Every how many servo periods --trajectory has a line", 1,
+              1'000'000'000);
+  set_run(*verb, command, options, plan);
 }
 
 }  // namespace gravure::cli

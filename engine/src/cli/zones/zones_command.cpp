@@ -182,9 +182,7 @@ void add_plan_verb(CLI::App& parent, Command& command) {
   verb->add_option("--k", options->k, "Clusters of k-means; left out: the fewest that meet the limits")
       ->check(integer_from(1, 1'000'000));
   verb->add_flag("--not-normalised", options->not_normalised, "k-means on positions in mm as they are");
-  verb->add_option("--seed", options->seed, "Of the starts of k-means")
-      ->check(integer_from(0, std::numeric_limits<std::int64_t>::max()))
-      ->capture_default_str();
+  add_integer(*verb, "--seed", options->seed, "Of the starts of k-means", 0, std::numeric_limits<std::int64_t>::max());
   verb->add_option("--max-incidence-deg", options->max_incidence_deg, "Between a contour's direction and its zone's")
       ->check(number_from(1e-3, 89))
       ->required();
@@ -195,8 +193,7 @@ void add_plan_verb(CLI::App& parent, Command& command) {
   verb->add_option("--field-mm", options->field_mm, "Side of the scan field, in place of the machine's")
       ->check(number_from(1e-3, 1e6));
   verb->add_option("--plot", options->plot, "Picture of the zones as SVG");
-  verb->callback(
-      [&command, options] { command.run = [&command, options] { return plan_contours(*options, command); }; });
+  set_run(*verb, command, options, plan_contours);
 }
 
 }  // namespace

@@ -190,8 +190,7 @@ void add_zones_compile(CLI::App& zones, Command& command) {
   verb->add_option("JOB", options->job, "Zones job (TOML)")->required();
   verb->add_option("-o,--output", options->output, "Program file to write (.grv)")->required();
   verb->add_option("--plot", options->plot, "Picture of the zones as SVG");
-  verb->callback(
-      [&command, options] { command.run = [&command, options] { return compile_zones(*options, command); }; });
+  set_run(*verb, command, options, compile_zones);
 }
 
 }  // namespace gravure::cli
