@@ -97,21 +97,27 @@ void note_changed_sources(const ProgramHeader& header, const std::vector<std::st
   }
 }
 
-/// Says of the files that the job names beside its images whether they are the ones that the program was compiled with.
-void note_changed_files(const ProgramHeader& header, const std::string& path, const std::string& images,
-                        VerifyReport& report) {
+/// Says of the files that the job names beside its images whether they are there, and the ones that the program was
+/// compiled with.
+void judge_files(const ProgramHeader& header, const std::string& path, const std::string& images,
+                 VerifyReport& report) {
   for (const SourceImage& file : header.files) {
     std::string place = images.empty() ? std::string() : locate_source(file, header, path, images);
     if (place.empty()) {
       place = locate_source(file, header, path, {});
     }
+    const auto unproved = [&report](const std::string& why) {
+      report.notes.push_back(why + ": what the file said is taken from the program");
+      report.violations.push_back(why +
+                                  ", so nothing proves that the program does what its job says: give --images DIR");
+    };
     if (place.empty()) {
-      report.notes.push_back(file.path + " not found: what it said is taken from the program");
+      unproved(file.path + " was not found");
       continue;
     }
     const Result<std::string> now = sha256_file(place);
     if (!now) {
-      report.notes.push_back(now.error().message + ": what it said is taken from the program");
+      unproved(now.error().message);
     } else if (now.value() != file.sha256) {
       report.notes.push_back(
           place + " is not the file that was compiled (other SHA-256): what it says now is not in the program");
@@ -157,7 +163,7 @@ Result<VerifiedProgram> verify_program_file(GrvProgram program, const std::strin
   if (found.stack && (report.wrong_pixels > 0 || report.uncompared_lines > 0)) {
     note_changed_sources(header, found.paths, report);
   }
-  note_changed_files(header, path, images, report);
+  judge_files(header, path, images, report);
   if (report.ab_step_um > report.seam_limit_um) {
     report.notes.push_back(
         fmt::format("one A-B edge ({:.3f} um) is coarser than limits.seam_um: within an edge the "

@@ -87,7 +87,7 @@ void add_dump(CLI::App& app, Command& command) {
   verb->add_option("--line", options->line, "Line of the revolution, from 0")
       ->required()
       ->check(integer_from(0, kMostIndex));
-  verb->callback([&command, options] { command.run = [&command, options] { return run_dump(*options, command); }; });
+  set_run(*verb, command, options, run_dump);
 }
 
 }  // namespace gravure::cli

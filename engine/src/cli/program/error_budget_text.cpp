@@ -1,4 +1,4 @@
-#include "job/error_budget_text.hpp"
+#include "program/error_budget_text.hpp"
 
 #include <fmt/format.h>
 
