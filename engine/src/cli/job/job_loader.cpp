@@ -237,7 +237,8 @@ Compilation prepare_compilation(const LoadedJob& loaded, const CompileRequest& r
 }
 
 Result<void> fill_hashes(ProgramHeader& header, SourceHashes& hashes) {
-  GRAVURE_TRY(const std::vector<std::string> found, hashes.wait());
+  ProgressBar bar("SHA-256 of the images", "MB");
+  GRAVURE_TRY(const std::vector<std::string> found, hashes.wait(bar));
   for (std::size_t i = 0; i < found.size(); ++i) {
     header.sources[i].sha256 = found[i];
   }
@@ -265,7 +266,8 @@ Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& o
   CompileOptions options;
   options.cancel = &cancel_token();  // before there is a temporary file: from here on Ctrl-C takes it away again
   Compilation made = prepare_compilation(loaded, request);
-  SourceHashes hashes(made.source_files, command.threads != 1);
+  SourceHashes hashes(made.source_files, command.threads == 1 ? SourceHashes::Begin::in_step : SourceHashes::Begin::now,
+                      *options.cancel);
   if (request.resume) {  // what is there is judged by them
     GRAVURE_CHECK(fill_hashes(made.header, hashes));
     GRAVURE_TRY(std::optional<ProgramHeader> there, finished_output(made.header, request, *options.cancel));
@@ -280,9 +282,9 @@ Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& o
   options.memory_bytes = command.memory_bytes();
   options.threads = command.threads;
   options.progress = &progress;
-  if (!request.resume) {
-    options.complete_header = [&hashes](ProgramHeader& header) { return fill_hashes(header, hashes); };
-  }
+  options.complete_header = [&hashes, &request](ProgramHeader& header) {
+    return request.resume ? hashes.check_unchanged() : fill_hashes(header, hashes);
+  };
   GRAVURE_TRY(ProgramHeader header, compile(std::move(made.header), made.stack, opener, *sink, options));
   if (!request.shard && may_share_bits(header)) {  // shards are compared when they are merged
     Result<ProgramHeader> shared = share_bits_of(request.output, request.grv);

@@ -1,35 +1,57 @@
 #include "job/source_hashes.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "gravure/formats/image_files.hpp"
-#include "verb.hpp"
 
 namespace gravure::cli {
+namespace {
+
+/// By what a file is known to be another one.
+struct Stamp {
+  std::uintmax_t bytes = 0;
+  std::filesystem::file_time_type written;
+  friend bool operator==(const Stamp&, const Stamp&) = default;
+};
+
+std::optional<Stamp> stamp_of(const std::string& file) {
+  std::error_code no_size;
+  std::error_code no_time;
+  const Stamp stamp{std::filesystem::file_size(file, no_size), std::filesystem::last_write_time(file, no_time)};
+  return no_size || no_time ? std::nullopt : std::optional(stamp);
+}
+
+}  // namespace
 
 /// The files one after the other, each once.
 class SourceHashes::Run {
  public:
   explicit Run(std::vector<std::string> files) : files_(std::move(files)) {
     for (const std::string& file : files_) {
-      std::error_code unknown;
-      if (known_.emplace(file, "").second) {
-        const std::uintmax_t bytes = std::filesystem::file_size(file, unknown);
-        all_bytes_ += unknown ? 0 : static_cast<double>(bytes);
+      const auto [known, is_new] = known_.try_emplace(file);
+      if (is_new) {
+        known->second.stamp = stamp_of(file);
+        all_bytes_ += known->second.stamp ? static_cast<std::int64_t>(known->second.stamp->bytes) : 0;
       }
     }
   }
 
-  double all_bytes() const { return all_bytes_; }
+  std::int64_t all_bytes() const { return all_bytes_; }
+  /// Any thread may ask.
+  std::int64_t taken_bytes() const { return taken_bytes_; }
+  bool at_end() const { return at_ == files_.size(); }
 
   /// Until that many of their bytes are taken in, or to their ends.
-  Result<void> go_on(double bytes, const CancelToken& cancel) {
-    while (!failure_ && at_ < files_.size() && taken_ < bytes) {
+  Result<void> go_on(std::int64_t bytes, const CancelToken& cancel) {
+    while (!failure_ && !at_end() && taken_bytes_ < bytes) {
       if (cancel.cancelled()) {
         return Error{ErrorCode::cancelled, files_[at_] + ": stopped before its SHA-256 was known"};
       }
@@ -41,17 +63,35 @@ class SourceHashes::Run {
   }
 
   Result<std::vector<std::string>> finish(const CancelToken& cancel) {
-    GRAVURE_CHECK(go_on(std::numeric_limits<double>::infinity(), cancel));
+    GRAVURE_CHECK(go_on(std::numeric_limits<std::int64_t>::max(), cancel));
     std::vector<std::string> hashes;
     for (const std::string& file : files_) {
-      hashes.push_back(known_[file]);
+      hashes.push_back(known_[file].hash);
     }
     return hashes;
   }
 
+  /// Any thread may ask.
+  Result<void> check_unchanged() const {
+    for (const auto& [file, source] : known_) {
+      if (stamp_of(file) != source.stamp) {
+        return Error{ErrorCode::bad_file,
+                     file +
+                         ": was written to while it was compiled: the program need not be what its "
+                         "SHA-256 says; compile again when the file is done"};
+      }
+    }
+    return {};
+  }
+
  private:
+  struct Source {
+    std::optional<Stamp> stamp;
+    std::string hash;
+  };
+
   Result<void> step() {
-    std::string& hash = known_[files_[at_]];
+    std::string& hash = known_[files_[at_]].hash;
     if (!hash.empty()) {
       ++at_;
       return {};
@@ -60,7 +100,7 @@ class SourceHashes::Run {
       GRAVURE_TRY(open_, Sha256File::open(files_[at_]));
     }
     GRAVURE_TRY(const std::size_t got, open_->next());
-    taken_ += static_cast<double>(got);
+    taken_bytes_ += static_cast<std::int64_t>(got);
     if (got == 0) {
       hash = open_->finish();
       open_.reset();
@@ -69,18 +109,21 @@ class SourceHashes::Run {
   }
 
   std::vector<std::string> files_;
-  std::map<std::string, std::string> known_;
+  std::map<std::string, Source> known_;
+  std::int64_t all_bytes_ = 0;
+  std::atomic<std::int64_t> taken_bytes_{0};
   std::size_t at_ = 0;
   std::optional<Sha256File> open_;
-  double all_bytes_ = 0;
-  double taken_ = 0;
   std::optional<Error> failure_;
 };
 
-SourceHashes::SourceHashes(std::vector<std::string> files, bool own_thread)
-    : run_(std::make_unique<Run>(std::move(files))) {
-  if (own_thread) {
-    found_ = std::async(std::launch::async, [this] { return run_->finish(stop_); });
+SourceHashes::SourceHashes(std::vector<std::string> files, Begin begin, const CancelToken& cancel)
+    : cancel_(cancel), run_(std::make_unique<Run>(std::move(files))) {
+  if (begin == Begin::now) {
+    try {
+      found_ = std::async(std::launch::async, [this] { return run_->finish(stop_); });
+    } catch (const std::system_error&) {  // no thread to be had: in step, then
+    }
   }
 }
 
@@ -89,23 +132,42 @@ SourceHashes::~SourceHashes() {
 }
 
 void SourceHashes::go_on(std::int64_t done, std::int64_t total) {
-  if (!found_.valid()) {
+  if (!found_.valid() && total > 0) {
     const double share = static_cast<double>(done) / static_cast<double>(total);
-    static_cast<void>(run_->go_on(share * run_->all_bytes(), cancel_token()));
+    static_cast<void>(run_->go_on(static_cast<std::int64_t>(share * static_cast<double>(run_->all_bytes())), cancel_));
   }
 }
 
-Result<std::vector<std::string>> SourceHashes::wait() {
-  if (!found_.valid()) {
-    return run_->finish(cancel_token());
-  }
+Result<std::vector<std::string>> SourceHashes::wait(Progress& progress) {
   constexpr auto kLook = std::chrono::milliseconds(50);
-  while (found_.wait_for(kLook) == std::future_status::timeout) {
-    if (cancel_token().cancelled()) {
+  constexpr std::int64_t kPiece = std::int64_t{16} << 20;
+  constexpr std::int64_t kMb = 1'000'000;
+  const std::int64_t before = run_->taken_bytes();
+  const std::int64_t left_mb = (run_->all_bytes() - before) / kMb;
+  const auto tell = [&] {
+    if (left_mb > 0) {
+      progress.update(std::min((run_->taken_bytes() - before) / kMb, left_mb), left_mb);
+    }
+  };
+  const bool own_thread = found_.valid();
+  for (std::int64_t piece = before + kPiece; !own_thread && !run_->at_end(); piece += kPiece) {
+    GRAVURE_CHECK(run_->go_on(piece, cancel_));
+    tell();
+  }
+  while (own_thread && found_.wait_for(kLook) == std::future_status::timeout) {
+    tell();
+    if (cancel_.cancelled()) {
       stop_.cancel();
     }
   }
-  return found_.get();
+  GRAVURE_TRY(std::vector<std::string> hashes, own_thread ? found_.get() : run_->finish(cancel_));
+  tell();
+  GRAVURE_CHECK(run_->check_unchanged());
+  return hashes;
+}
+
+Result<void> SourceHashes::check_unchanged() const {
+  return run_->check_unchanged();
 }
 
 }  // namespace gravure::cli
