@@ -11,13 +11,14 @@ std::byte* StoredBlocks::get(int file, std::int64_t offset, std::int64_t bytes) 
   if (bytes > kBytes) {
     return nullptr;
   }
-  if (offset < first_ || offset + bytes > end_) {
-    const bool goes_on = end_ > 0 && offset >= first_ && offset <= end_;  // whoever jumps about wants nothing else
-    if (!fetch(file, offset, goes_on ? kBytes : bytes) || offset + bytes > end_) {
+  if (offset < next_byte_ || offset + bytes > end_byte_) {
+    const bool goes_on = end_byte_ > 0 && offset >= next_byte_ && offset <= end_byte_;  // who jumps about wants no more
+    if (!fetch(file, offset, goes_on ? kBytes : bytes) || offset + bytes > end_byte_) {
       return nullptr;
     }
   }
-  return held_.get() + (offset - first_);
+  next_byte_ = offset + bytes;
+  return held_.get() + (offset - held_from_byte_);
 }
 
 bool StoredBlocks::fetch(int file, std::int64_t offset, std::int64_t bytes) {
@@ -25,8 +26,8 @@ bool StoredBlocks::fetch(int file, std::int64_t offset, std::int64_t bytes) {
     held_ = std::make_unique_for_overwrite<std::byte[]>(static_cast<std::size_t>(kBytes));
   }
   const ssize_t got = ::pread(file, held_.get(), static_cast<std::size_t>(bytes), offset);
-  first_ = offset;
-  end_ = offset + std::max<std::int64_t>(0, got);
+  held_from_byte_ = next_byte_ = offset;
+  end_byte_ = offset + std::max<std::int64_t>(0, got);
   return got > 0;
 }
 

@@ -18,15 +18,17 @@ class StoredBlocks {
  public:
   static constexpr std::int64_t kBytes = std::int64_t{64} << 10;
 
-  /// A block, until the next call; null where it is too large to be held here or cannot be read.
+  /// A block, until the next call; null where it is too large to be held here or cannot be read. Each byte is given out
+  /// once, then read anew: decoders may write to it (JBIG turns its bits round and leaves them so).
   std::byte* get(int file, std::int64_t offset, std::int64_t bytes);
 
  private:
   bool fetch(int file, std::int64_t offset, std::int64_t bytes);
 
   std::unique_ptr<std::byte[]> held_;
-  std::int64_t first_ = 0;  // what part of the file it is
-  std::int64_t end_ = 0;
+  std::int64_t held_from_byte_ = 0;  // of the file
+  std::int64_t next_byte_ = 0;       // the first that was not given out
+  std::int64_t end_byte_ = 0;
 };
 
 /// What all ways of reading share: the handle, the checks of a call, the wording of damage.

@@ -42,6 +42,26 @@ std::vector<Variant> variants() {
   return all;
 }
 
+/// libtiff's decoder of JBIG turns the bits of what it is given round, and leaves them so.
+TEST(BilevelTiff, ReadsAStripAgainWhoseDecoderWritesToItsInput) {
+  if (TIFFIsCODECConfigured(COMPRESSION_JBIG) == 0) {
+    GTEST_SKIP() << "this libtiff has no JBIG";
+  }
+  const TempFolder folder;
+  const Bits bits = pattern(203, 75);
+  TiffSpec spec;
+  spec.compression = COMPRESSION_JBIG;
+  spec.rows_per_block = 75;
+  write_tiff(folder / "a.tif", {bits}, spec);
+  const auto source = BilevelTiffOpener().open(folder / "a.tif", 0);
+  ASSERT_TRUE(source) << source.error().message;
+  for (int time = 0; time < 3; ++time) {
+    const auto read = read_all(*source.value());
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read.value(), bits);
+  }
+}
+
 TEST(BilevelTiff, ReadsEveryCodecLayoutAndByteOrderAsWritten) {
   const TempFolder folder;
   const std::string path = folder / "a.tif";

@@ -1,9 +1,10 @@
 #include "job/source_hashes.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
@@ -17,16 +18,20 @@ namespace {
 
 /// By what a file is known to be another one.
 struct Stamp {
-  std::uintmax_t bytes = 0;
-  std::filesystem::file_time_type written;
+  dev_t device = 0;
+  ino_t inode = 0;
+  off_t bytes = 0;
+  time_t written_s = 0;
+  long written_ns = 0;
   friend bool operator==(const Stamp&, const Stamp&) = default;
 };
 
 std::optional<Stamp> stamp_of(const std::string& file) {
-  std::error_code no_size;
-  std::error_code no_time;
-  const Stamp stamp{std::filesystem::file_size(file, no_size), std::filesystem::last_write_time(file, no_time)};
-  return no_size || no_time ? std::nullopt : std::optional(stamp);
+  struct stat is = {};
+  if (::stat(file.c_str(), &is) != 0) {
+    return std::nullopt;
+  }
+  return Stamp{is.st_dev, is.st_ino, is.st_size, is.st_mtim.tv_sec, is.st_mtim.tv_nsec};
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace gravure::cli {
 
 /// SHA-256 of files that other work reads meanwhile: found by a thread of its own from now on, or, where one thread is
-/// to do everything, in step with that work. Giving up stops it.
+/// to do everything or no thread is to be had, in step with that work. Giving up stops it.
 class SourceHashes {
  public:
   enum class Begin : std::uint8_t { now, in_step };
