@@ -7,6 +7,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -100,8 +101,8 @@ TEST_P(SourceHashesTest, RefuseAFileThatGrowsMeanwhile) {
   const auto found = wait(hashes);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, ErrorCode::bad_file);
-  EXPECT_EQ(found.error().message, b + ": was written to while it was compiled: the program need not be what its "
-                                       "SHA-256 says; compile again when the file is done");
+  EXPECT_EQ(found.error().message, b + ": changed while it was compiled (written to, replaced or removed): the program "
+                                       "need not be what its SHA-256 says; compile again when the file is done");
 }
 
 TEST_P(SourceHashesTest, RefuseAFileOfTheSameSizeThatIsWrittenAnew) {
@@ -109,6 +110,16 @@ TEST_P(SourceHashesTest, RefuseAFileOfTheSameSizeThatIsWrittenAnew) {
   fs::last_write_time(a, fs::last_write_time(a) - std::chrono::seconds(2));
   SourceHashes hashes({a}, GetParam(), cancel_);
   write("a", "xyz");
+  EXPECT_EQ(wait(hashes).error().code, ErrorCode::bad_file);
+}
+
+TEST_P(SourceHashesTest, RefuseAFileWhoseTimeOfWritingIsSetBack) {
+  const std::string a = write("a", "abc");
+  const fs::file_time_type written = fs::last_write_time(a);
+  SourceHashes hashes({a}, GetParam(), cancel_);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // clocks of files tick every few milliseconds
+  write("a", "xyz");
+  fs::last_write_time(a, written);
   EXPECT_EQ(wait(hashes).error().code, ErrorCode::bad_file);
 }
 

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <limits>
@@ -16,13 +17,14 @@
 namespace gravure::cli {
 namespace {
 
-/// By what a file is known to be another one.
+/// By what a file is known to be another one. The time of writing can be set back, that of the last change of any kind
+/// cannot.
 struct Stamp {
   dev_t device = 0;
   ino_t inode = 0;
-  off_t bytes = 0;
-  time_t written_s = 0;
-  long written_ns = 0;
+  std::int64_t bytes = 0;
+  std::array<std::int64_t, 2> written_s_ns = {};
+  std::array<std::int64_t, 2> changed_s_ns = {};
   friend bool operator==(const Stamp&, const Stamp&) = default;
 };
 
@@ -31,7 +33,11 @@ std::optional<Stamp> stamp_of(const std::string& file) {
   if (::stat(file.c_str(), &is) != 0) {
     return std::nullopt;
   }
-  return Stamp{is.st_dev, is.st_ino, is.st_size, is.st_mtim.tv_sec, is.st_mtim.tv_nsec};
+  return Stamp{is.st_dev,
+               is.st_ino,
+               is.st_size,
+               {is.st_mtim.tv_sec, is.st_mtim.tv_nsec},
+               {is.st_ctim.tv_sec, is.st_ctim.tv_nsec}};
 }
 
 }  // namespace
@@ -82,8 +88,8 @@ class SourceHashes::Run {
       if (stamp_of(file) != source.stamp) {
         return Error{ErrorCode::bad_file,
                      file +
-                         ": was written to while it was compiled: the program need not be what its "
-                         "SHA-256 says; compile again when the file is done"};
+                         ": changed while it was compiled (written to, replaced or removed): the program need not be "
+                         "what its SHA-256 says; compile again when the file is done"};
       }
     }
     return {};
