@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "verb.hpp"
+
 namespace gravure::cli {
 
 namespace fs = std::filesystem;
@@ -44,6 +46,7 @@ Result<FolderOutput> FolderOutput::create(const std::string& path) {
 }
 
 Result<void> FolderOutput::commit() {
+  GRAVURE_CHECK(check_not_stopped());
   std::error_code failed;
   fs::rename(temporary_, path_, failed);
   if (failed) {

@@ -19,6 +19,7 @@ class FolderOutput {
 
   /// Where a file of the folder is written until commit().
   std::filesystem::path file(const std::string& name) const { return temporary_ / name; }
+  /// Puts it in its place; cancelled, without a trace, where the user has stopped before.
   Result<void> commit();
 
  private:

@@ -15,15 +15,6 @@ Result<TextOutput> TextOutput::create(const std::string& path) {
   return TextOutput(std::move(output), file);
 }
 
-Result<TextOutput> TextOutput::staged(const std::string& path, std::string text) {
-  GRAVURE_TRY(TextOutput output, create(path));
-  output.text_ = std::move(text);
-  if (!output.flush(true) || std::fflush(output.file_.get()) != 0) {
-    return Error{ErrorCode::io, path + ": cannot be written: is the disk full?"};
-  }
-  return output;
-}
-
 bool TextOutput::flush(bool all) {
   constexpr std::size_t kPiece = std::size_t{1} << 18;
   if (text_.size() >= kPiece || all) {
@@ -48,10 +39,23 @@ Result<void> commit_together(std::vector<TextOutput> files) {
       return Error{ErrorCode::io, file.output_.path() + ": cannot be written: is the disk full?"};
     }
   }
-  if (cancel_token().cancelled()) {
-    return Error{ErrorCode::cancelled, "stopped; nothing was written"};
-  }
+  GRAVURE_CHECK(check_not_stopped());
   for (TextOutput& file : files) {
+    GRAVURE_CHECK(file.commit());
+  }
+  return {};
+}
+
+Result<void> write_texts(const std::vector<TextFile>& files) {
+  std::vector<FileOutput> written;
+  for (const TextFile& file : files) {
+    if (!file.path.empty()) {
+      GRAVURE_TRY(FileOutput output, stage_file(file.path, file.text));
+      written.push_back(std::move(output));
+    }
+  }
+  GRAVURE_CHECK(check_not_stopped());
+  for (FileOutput& file : written) {
     GRAVURE_CHECK(file.commit());
   }
   return {};

@@ -14,8 +14,6 @@ namespace gravure::cli {
 class TextOutput {
  public:
   static Result<TextOutput> create(const std::string& path);
-  /// All of `text` written, but not in its place before commit(): for files that come together or not at all.
-  static Result<TextOutput> staged(const std::string& path, std::string text);
   std::string& text() { return text_; }
   /// Writes away what has gathered, when it is worth it; false once a write has failed.
   bool flush(bool all);
@@ -36,5 +34,13 @@ class TextOutput {
 /// Puts files that were written in their places: all of them, or none where one cannot be written to its end or the
 /// user has stopped before. From the first on Ctrl-C changes nothing any more.
 Result<void> commit_together(std::vector<TextOutput> files);
+
+struct TextFile {
+  std::string path;  ///< empty: not asked for
+  std::string text;
+};
+
+/// Writes the files of one run that were asked for: all of them, or none where the user has stopped before.
+Result<void> write_texts(const std::vector<TextFile>& files);
 
 }  // namespace gravure::cli

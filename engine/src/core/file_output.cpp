@@ -160,15 +160,18 @@ Result<void> FileOutput::commit() {
   return sync_path(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
 }
 
-Result<void> write_file(const std::string& path, std::string_view content) {
+Result<FileOutput> stage_file(const std::string& path, std::string_view content) {
   GRAVURE_TRY(FileOutput output, FileOutput::create(path));
-  {
-    const Descriptor file(::open(output.temporary_path().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
-    if (!file.valid()) {
-      return system_error("cannot open the output", path);
-    }
-    GRAVURE_CHECK(write_all(file.get(), content, path));
+  const Descriptor file(::open(output.temporary_path().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
+  if (!file.valid()) {
+    return system_error("cannot open the output", path);
   }
+  GRAVURE_CHECK(write_all(file.get(), content, path));
+  return output;
+}
+
+Result<void> write_file(const std::string& path, std::string_view content) {
+  GRAVURE_TRY(FileOutput output, stage_file(path, content));
   return output.commit();
 }
 

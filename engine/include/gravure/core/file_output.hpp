@@ -33,6 +33,8 @@ class FileOutput {
   std::string temporary_;
 };
 
+/// All of `content` on the way to `path`, but not in its place before commit().
+Result<FileOutput> stage_file(const std::string& path, std::string_view content);
 /// Writes `content` to `path`, whole or not at all.
 Result<void> write_file(const std::string& path, std::string_view content);
 /// Why an input could not be opened, from errno: bad_file where the user can mend it (not there, not allowed, no file

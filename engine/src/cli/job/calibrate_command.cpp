@@ -6,6 +6,7 @@
 #include "gravure/core/file_output.hpp"
 #include "gravure/scan/calibrate.hpp"
 #include "program/program_files.hpp"
+#include "text_output.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -37,7 +38,7 @@ Result<int> run_calibrate(const CalibrateArguments& options, const Command& comm
     return Error{calibration.error().code, options.points + ": " + calibration.error().message};
   }
   const scan::Calibration& made = calibration.value();
-  GRAVURE_CHECK(write_file(options.output, scan::field_grid_text(made.grid)));
+  GRAVURE_CHECK(write_texts({{options.output, scan::field_grid_text(made.grid)}}));
   const scan::MeasuredPoint& worst = points.value()[made.worst];
   const double interpolation_um = rounded(made.grid.interpolation_error_um(), 6);
   if (command.json) {

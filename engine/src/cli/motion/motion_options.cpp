@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "gravure/core/file_output.hpp"
 #include "program/program_files.hpp"
 #include "verb.hpp"
 
@@ -156,15 +155,13 @@ Result<void> check_outputs(const OutputOptions& options, const std::vector<std::
 }
 
 Result<void> write_outputs(const OutputOptions& options, const std::string& csv, const std::string& title,
-                           const std::string& x_name, const std::vector<formats::Curve>& curves) {
-  if (!options.csv.empty()) {
-    GRAVURE_CHECK(write_file(options.csv, csv));
+                           const std::string& x_name, const std::vector<formats::Curve>& curves,
+                           const TextFile& program) {
+  TextFile plot{options.plot, {}};
+  if (!plot.path.empty()) {
+    plot.text = formats::curves_to_svg(options.plot_title.empty() ? title : options.plot_title, x_name, curves);
   }
-  if (!options.plot.empty()) {
-    GRAVURE_CHECK(write_file(
-        options.plot, formats::curves_to_svg(options.plot_title.empty() ? title : options.plot_title, x_name, curves)));
-  }
-  return {};
+  return write_texts({program, {options.csv, csv}, std::move(plot)});
 }
 
 }  // namespace gravure::cli

@@ -10,6 +10,7 @@
 #include "gravure/formats/motion_json.hpp"
 #include "gravure/motion/plan_profile.hpp"
 #include "gravure/motion/settling.hpp"
+#include "text_output.hpp"
 
 namespace gravure::cli {
 
@@ -75,8 +76,9 @@ void add_output_options(CLI::App& verb, OutputOptions& options);
 /// Fails with bad_argument, before anything is computed, where two of the files to write are one, or one is an input.
 Result<void> check_outputs(const OutputOptions& options, const std::vector<std::string>& inputs,
                            const std::string& program_output = {});
-/// Writes what was asked for.
+/// Writes what was asked for, all or nothing; `program` with it.
 Result<void> write_outputs(const OutputOptions& options, const std::string& csv, const std::string& title,
-                           const std::string& x_name, const std::vector<formats::Curve>& curves);
+                           const std::string& x_name, const std::vector<formats::Curve>& curves,
+                           const TextFile& program = {});
 
 }  // namespace gravure::cli

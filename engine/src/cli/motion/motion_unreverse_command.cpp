@@ -205,7 +205,6 @@ Result<int> run_unreverse(const UnreverseOptions& options, bool json) {
   }
   if (!options.rewritten.empty()) {
     GRAVURE_TRY(tool.rewritten, rewrite(options, path, smoothed));
-    GRAVURE_CHECK(write_file(options.rewritten, tool.rewritten->program));
   }
   const std::vector<formats::UnreversedAxis> axes{axis_of(options, "a", smoothed.a, path.a_deg),
                                                   axis_of(options, "c", smoothed.c, path.c_deg)};
@@ -214,7 +213,8 @@ Result<int> run_unreverse(const UnreverseOptions& options, bool json) {
                                            {"c degrees", path.block, smoothed.c.angle},
                                            {"c degrees, published shift", path.block, axes[1].shifted.angle}};
   const std::string csv = options.output.csv.empty() ? "" : path_csv(path, smoothed, axes);
-  GRAVURE_CHECK(write_outputs(options.output, csv, "Rotary axes without unintended reversals", "block", curves));
+  GRAVURE_CHECK(write_outputs(options.output, csv, "Rotary axes without unintended reversals", "block", curves,
+                              {options.rewritten, tool.rewritten ? tool.rewritten->program : ""}));
   print(json ? formats::unreversed_to_json(axes, tool) : unreversed_text(axes, tool));
   return kDone;
 }

@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "gravure/core/file_output.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/job_file.hpp"
 #include "gravure/report/report_data.hpp"
@@ -15,6 +14,7 @@
 #include "report/preview_path.hpp"
 #include "report/report_command.hpp"
 #include "report/report_writer.hpp"
+#include "text_output.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -95,7 +95,7 @@ Result<int> run_preview(const PreviewArguments& options, const Command& command)
   canvas.draw(seam, depth ? Ramp::depth : Ramp::fired);
   canvas.draw_seam(seam, rows);
   GRAVURE_TRY(const std::string png, canvas.png());
-  GRAVURE_CHECK(write_file(options.output, png));
+  GRAVURE_CHECK(write_texts({{options.output, png}}));
   const char* unit = relief.in_um ? "um" : "pulses";
   if (command.json) {
     Json json = {{"picture", options.output},

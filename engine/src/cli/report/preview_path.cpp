@@ -6,12 +6,12 @@
 #include <cmath>
 #include <vector>
 
-#include "gravure/core/file_output.hpp"
 #include "gravure/core/units.hpp"
 #include "gravure/report/path_view.hpp"
 #include "gravure/twin/verify_path.hpp"
 #include "program/program_files.hpp"
 #include "report/preview_canvas.hpp"
+#include "text_output.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -81,7 +81,7 @@ Result<int> preview_path(LineSource& program, const std::string& output, std::in
   canvas.draw(number, Ramp::fired);
   canvas.draw(height, Ramp::depth);
   GRAVURE_TRY(const std::string png, canvas.png());
-  GRAVURE_CHECK(write_file(output, png));
+  GRAVURE_CHECK(write_texts({{output, png}}));
   const double cell_um = map.cell_mm() * kUmPerMm;
   const double lowest_mm = rounded(map.lowest_mm(), 6);
   const double highest_mm = rounded(map.highest_mm(), 6);

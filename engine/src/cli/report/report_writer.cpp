@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "gravure/core/file_output.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/report_page.hpp"
 #include "program/program_files.hpp"
+#include "text_output.hpp"
 #include "texture/freeform_job.hpp"
 
 namespace gravure::cli {
@@ -54,7 +54,7 @@ Result<WrittenReport> write_report(const ReportRequest& request, VerifiedProgram
   data.job = std::move(verified.job);
   data.verified = std::move(verified.report);
   GRAVURE_TRY(const std::string page, report_page(data));
-  GRAVURE_CHECK(write_file(request.output, page));
+  GRAVURE_CHECK(write_texts({{request.output, page}}));
   written.bytes = static_cast<std::int64_t>(page.size());
   written.shown_layers = std::count_if(data.pictures.layers.begin(), data.pictures.layers.end(),
                                        [](const report::LayerPicture& layer) { return !layer.shares.empty(); });
@@ -80,7 +80,7 @@ Result<WrittenPathReport> write_path_report(const ReportRequest& request, LineSo
   GRAVURE_TRY(const std::int64_t period, report::first_firing_line(program, 0, 0));
   GRAVURE_TRY(data.period, report::line_view(program, 0, period));
   GRAVURE_TRY(const std::string page, path_report_page(data));
-  GRAVURE_CHECK(write_file(request.output, page));
+  GRAVURE_CHECK(write_texts({{request.output, page}}));
   return WrittenPathReport{std::move(data.verified), static_cast<std::int64_t>(page.size())};
 }
 

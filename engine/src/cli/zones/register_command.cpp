@@ -246,26 +246,19 @@ Result<int> run_register(const RegisterOptions& options, bool json) {
   warn_of(found);
   Json document = registration_json(found);
   std::string text = registration_text(found);
-  std::vector<TextOutput> files;  // all of them, or none
-  const auto stage = [&files](const std::string& path, std::string content) -> Result<void> {
-    GRAVURE_TRY(TextOutput file, TextOutput::staged(path, std::move(content)));
-    files.push_back(std::move(file));
-    return {};
-  };
+  std::vector<TextFile> files;
   if (!contours.contours.empty()) {
     GRAVURE_TRY(LaidContours laid, place_contours(options, cad, scan, found, contours));
     document["contours"] = contours_json(laid.placed);
     document["contours_out_sha256"] = sha256_text(laid.json);
     text += fmt::format("{} contours written to {}\n", laid.placed.size(), options.contours_output);
-    GRAVURE_CHECK(stage(options.contours_output, std::move(laid.json)));
+    files.push_back({options.contours_output, std::move(laid.json)});
   }
   if (!options.residuals.empty()) {
-    GRAVURE_CHECK(stage(options.residuals, residuals_csv(scan, found)));
+    files.push_back({options.residuals, residuals_csv(scan, found)});
   }
-  if (!options.output.empty()) {
-    GRAVURE_CHECK(stage(options.output, document.dump(2) + "\n"));
-  }
-  GRAVURE_CHECK(commit_together(std::move(files)));
+  files.push_back({options.output, document.dump(2) + "\n"});
+  GRAVURE_CHECK(write_texts(files));
   json ? print_json(document) : print(text);
   return is_sure(found) ? kDone : kLimitViolated;
 }

@@ -6,10 +6,10 @@
 #include <memory>
 #include <optional>
 
-#include "gravure/core/file_output.hpp"
 #include "gravure/zones/plan_zones.hpp"
 #include "motion/motion_options.hpp"
 #include "program/program_files.hpp"
+#include "text_output.hpp"
 #include "texture/texture_options.hpp"
 #include "zones/zones_compile.hpp"
 #include "zones/zones_input.hpp"
@@ -161,7 +161,7 @@ Result<int> plan_contours(const ZonesArguments& options, const Command& command)
   }();
   GRAVURE_TRY(const ZonePlan plan, planned);
   if (!options.plot.empty()) {
-    GRAVURE_CHECK(write_file(options.plot, zones_to_svg(plan, options.contours)));
+    GRAVURE_CHECK(write_texts({{options.plot, zones_to_svg(plan, options.contours)}}));
   }
   if (command.json) {
     print_json(plan_json(options, request, plan));

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "gravure/core/file_output.hpp"
 #include "program/path_program.hpp"
 #include "program/program_files.hpp"
-#include "text_output.hpp"
 #include "texture/texture_options.hpp"
 #include "zones/zones_plot.hpp"
 #include "zones/zones_program.hpp"
@@ -132,12 +132,12 @@ void report(const CompileOptions& options, const LoadedZonesJob& loaded, const Z
 }
 
 /// Drawn, but not in its place before the program is in its own.
-Result<std::optional<TextOutput>> draw(const CompileOptions& options, const LoadedZonesJob& loaded,
+Result<std::optional<FileOutput>> draw(const CompileOptions& options, const LoadedZonesJob& loaded,
                                        const ZonesProgram& laid) {
   if (options.plot.empty()) {
-    return std::optional<TextOutput>();
+    return std::optional<FileOutput>();
   }
-  GRAVURE_TRY(TextOutput plot, TextOutput::staged(options.plot, zones_to_svg(laid.zones, loaded.job.contours)));
+  GRAVURE_TRY(FileOutput plot, stage_file(options.plot, zones_to_svg(laid.zones, loaded.job.contours)));
   return std::optional(std::move(plot));
 }
 
@@ -172,7 +172,7 @@ Result<int> compile_zones(const CompileOptions& options, const Command& command)
   GRAVURE_CHECK(refuse_overwrite({{"--output", options.output, Writes::program}, {"--plot", options.plot}},
                                  {options.job, files.contours, files.transform, files.machine}));
   GRAVURE_TRY(const ZonesProgram laid, lay_out_zones(loaded));
-  GRAVURE_TRY(std::optional<TextOutput> plot, draw(options, loaded, laid));
+  GRAVURE_TRY(std::optional<FileOutput> plot, draw(options, loaded, laid));
   GRAVURE_TRY(const CompiledPath made, compile_zones_program(loaded, laid, options.output));
   if (plot) {
     GRAVURE_CHECK(plot->commit());
