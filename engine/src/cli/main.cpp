@@ -136,12 +136,22 @@ const CLI::App& given_verb(const CLI::App& app, const std::vector<std::string>& 
   return *level;
 }
 
-/// What the parser would take for something else: an empty text for 0 or no path, an option for the value of another.
+/// What the parser would take for something else: an empty text for 0 or no path, an option for the value of another,
+/// or for one of no verb.
 void refuse_ambiguous(const CLI::App& app, const std::vector<std::string>& arguments) {
   const auto empty = std::find(arguments.begin(), arguments.end(), "");
   if (empty != arguments.end()) {
     throw CLI::ValidationError(empty == arguments.begin() ? "the verb" : "the argument after " + *(empty - 1),
                                "is empty");
+  }
+  if (!arguments.empty() && arguments.front()[0] == '-') {
+    const auto verb = std::find_if(arguments.begin(), arguments.end(), [](const std::string& argument) {
+      return std::any_of(kVerbs.begin(), kVerbs.end(), [&](const Verb& known) { return known.name == argument; });
+    });
+    if (verb != arguments.end()) {
+      throw CLI::ValidationError(
+          arguments.front(), "stands before the verb; options follow it: gravure " + *verb + " " + arguments.front());
+    }
   }
   const CLI::App& verb = given_verb(app, arguments);
   for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {

@@ -182,6 +182,11 @@ Error open_error(const std::string& path, int reason) {
           path + ": cannot open: " + std::strerror(reason) + remedy(reason)};
 }
 
+bool is_device_failure(int reason) {
+  return reason == EIO || reason == ENODEV || reason == ENXIO || reason == ESTALE || reason == ETIMEDOUT ||
+         reason == EREMOTEIO || reason == EUCLEAN;
+}
+
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
   const auto too_large = [&] {
     return Error{ErrorCode::bad_file, path + ": larger than the " + std::to_string(max_bytes) + " bytes allowed here"};

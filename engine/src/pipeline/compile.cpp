@@ -112,10 +112,6 @@ std::int64_t program_bytes(std::int64_t layers, std::int64_t lines, std::int64_t
   return kLibrary + kTablesPerChunk * chunks * layers;
 }
 
-std::string whole_mib(std::int64_t bytes) {
-  return std::to_string((bytes + kMiB - 1) / kMiB) + " MiB";
-}
-
 Result<Budget> divide_budget(const Plan& plan, const LayerStack& stack, const Geometry& geometry,
                              const CompileOptions& options) {
   const ReaderNeeds needs = reader_needs(plan, stack, geometry.lines_per_chunk);
@@ -125,12 +121,14 @@ Result<Budget> divide_budget(const Plan& plan, const LayerStack& stack, const Ge
     const std::int64_t decoder = stack.decoder_bytes.value_or(0);
     std::string remedy = ": raise --memory";
     if (decoder > least / 2) {
-      remedy = ", " + whole_mib(decoder) +
-               " of them to decode the largest strip or row of tiles: raise --memory, or rewrite TIFF files in small "
-               "strips with `tiffcp -s -r 64`";
+      remedy =
+          ", " + std::to_string(whole_mib(decoder)) +
+          " MiB of them to decode the largest strip or row of tiles: raise --memory, or rewrite TIFF files in small "
+          "strips with `tiffcp -s -r 64`";
     }
     return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options.memory_bytes / kMiB) +
-                                              " MiB: these images need at least " + whole_mib(least) + remedy};
+                                              " MiB: these images need at least " + std::to_string(whole_mib(least)) +
+                                              " MiB" + remedy};
   }
   const int wanted = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   const std::int64_t workers_bytes = options.memory_bytes - once;

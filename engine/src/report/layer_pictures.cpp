@@ -126,6 +126,7 @@ class Work {
     SeamWindow seam(pictures_.picture, pictures_.seam_place, pictures_.lines_are_rows);
     UnrollOptions unroll_options;
     unroll_options.memory_bytes = memory_bytes;
+    unroll_options.table_bytes = options_.table_bytes;
     unroll_options.cancel = options_.cancel;
     const RowSink sink = [&](std::span<const std::byte> rows, std::int64_t lines) -> Result<void> {
       GRAVURE_CHECK(count.add(rows, lines));
@@ -231,11 +232,12 @@ Result<LayerPictures> layer_pictures(const std::function<Result<std::unique_ptr<
                                               std::to_string(layers - 1)};
   }
   Work work(header, devices, options);
-  // A worker's share must still turn a picture whose lines run along columns: a quarter of the budget at least.
   const std::int64_t wanted =
       options.threads > 0 ? options.threads : std::max<std::int64_t>(1, std::thread::hardware_concurrency());
-  const std::int64_t workers = std::min<std::int64_t>({wanted, 4, work.layers()});
-  const std::int64_t share = (options.memory_bytes - options.program_bytes) / workers;
+  const std::int64_t all = options.memory_bytes - options.table_bytes;
+  const std::int64_t fit = std::max<std::int64_t>(1, all / least_unroll_bytes(*program));
+  const std::int64_t workers = std::min<std::int64_t>({wanted, 4, work.layers(), fit});
+  const std::int64_t share = all / workers + options.table_bytes;  // so that a refusal names all of the budget
   std::vector<std::thread> threads;
   for (std::int64_t worker = 1; worker < workers; ++worker) {
     threads.emplace_back([&] { work.run(programs, share); });

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 
+#include "gravure/core/units.hpp"
+
 namespace gravure::texture {
 namespace {
 
 constexpr std::int64_t kBytesAPoint = 1000;
-constexpr std::int64_t kOnce = std::int64_t{56} << 20;  // the program itself, blocks of motion
-constexpr std::int64_t kMiB = std::int64_t{1} << 20;
+constexpr std::int64_t kOnce = 56 * kMiB;  // the program itself, blocks of motion
 
 }  // namespace
 
@@ -26,7 +27,7 @@ Result<void> check_planning_memory(std::size_t points, std::int64_t most_bytes) 
       ErrorCode::out_of_range,
       fmt::format("a path of {} points needs {} MiB of memory to be planned, allowed are {} MiB: that does for "
                   "{} points; take them further apart, a smaller texture or more memory",
-                  points, needed / kMiB + 1, most_bytes / kMiB,
+                  points, whole_mib(needed), most_bytes / kMiB,
                   std::max<std::int64_t>(0, (most_bytes - kOnce) / kBytesAPoint))};
 }
 

@@ -49,14 +49,20 @@ std::int64_t fixed_bytes(const LineSource& program) {
   return 6 * kMiB + 6 * program.lines_per_chunk() * program.header().line_bytes();
 }
 
-/// How many of `all` units of the picture fit the budget, each `unit` bytes; at least one must.
-Result<std::int64_t> fitting(const LineSource& program, const UnrollOptions& options, std::int64_t unit,
-                             std::int64_t all) {
-  const std::int64_t fixed = options.program_bytes + fixed_bytes(program);
+/// What a picture is put together of: its line, or eight rows (a byte of each line) before and after they are turned.
+std::int64_t unit_bytes(const ProgramHeader& header) {
+  return columns_are_lines(header) ? 2 * (header.plan.rotary.lines_per_revolution + 7)
+                                   : raster::packed_bytes(image_columns(header.plan));
+}
+
+/// How many of `all` units of the picture fit the budget; at least one must.
+Result<std::int64_t> fitting(const LineSource& program, const UnrollOptions& options, std::int64_t all) {
+  const std::int64_t unit = unit_bytes(program.header());
+  const std::int64_t fixed = options.table_bytes + fixed_bytes(program);
   if (options.memory_bytes < fixed + unit) {
     return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options.memory_bytes / kMiB) +
                                               " MiB: turning this picture needs at least " +
-                                              std::to_string((fixed + unit + kMiB - 1) / kMiB) + " MiB"};
+                                              std::to_string(whole_mib(fixed + unit)) + " MiB"};
   }
   return std::clamp<std::int64_t>((options.memory_bytes - fixed) / unit, 1, all);
 }
@@ -68,7 +74,7 @@ Result<void> gather_lines(LineSource& program, ChunkRun& runner, const Showing& 
   const std::int64_t columns = image_columns(header.plan);
   const std::int64_t all = header.plan.rotary.lines_per_revolution;
   const std::int64_t bytes = raster::packed_bytes(columns);
-  GRAVURE_TRY(const std::int64_t fit, fitting(program, options, bytes, all));
+  GRAVURE_TRY(const std::int64_t fit, fitting(program, options, all));
   const std::int64_t block = std::min(fit, std::max<std::int64_t>(1, program.lines_per_chunk()));
   std::vector<std::byte> lines(as_size(block * bytes));
   for (std::int64_t first = 0; first < all; first += block) {
@@ -90,8 +96,7 @@ Result<void> gather_columns(LineSource& program, ChunkRun& runner, const Showing
   const ProgramHeader& header = program.header();
   const std::int64_t columns = image_columns(header.plan);
   const std::int64_t lines = header.plan.rotary.lines_per_revolution;
-  GRAVURE_TRY(const std::int64_t fit,
-              fitting(program, options, 2 * (lines + 7), raster::packed_bytes(columns)));  // eight rows a byte
+  GRAVURE_TRY(const std::int64_t fit, fitting(program, options, raster::packed_bytes(columns)));
   for (std::int64_t first = 0; first < columns; first += 8 * fit) {
     const std::int64_t count = std::min(8 * fit, columns - first);
     std::vector<std::byte> strip(as_size(lines * raster::packed_bytes(count)));
@@ -137,6 +142,10 @@ UnrolledSize unrolled_size(const ProgramHeader& header) {
   const std::int64_t lines = header.plan.rotary.lines_per_revolution;
   const std::int64_t columns = image_columns(header.plan);
   return columns_are_lines(header) ? UnrolledSize{lines, columns} : UnrolledSize{columns, lines};
+}
+
+std::int64_t least_unroll_bytes(const LineSource& program) {
+  return fixed_bytes(program) + unit_bytes(program.header());
 }
 
 std::int64_t image_layers(const ProgramHeader& header) {

@@ -22,10 +22,6 @@ namespace {
 
 constexpr std::int64_t kReportBytes = 256;  // of each revolution: its row of the seam table
 
-std::string whole_mib(std::int64_t bytes) {
-  return std::to_string((bytes + kMiB - 1) / kMiB);
-}
-
 /// The layers cut from one source image, and the revolutions that expose each.
 struct Group {
   std::vector<std::int64_t> layers;
@@ -88,7 +84,7 @@ class Verifier {
   /// What all of them hold together: the program's header and tables, and what is reported of revolutions.
   std::int64_t shared_bytes() const {
     const auto layers = static_cast<std::int64_t>(header_.layers.size());
-    return options_.program_bytes + 128 * layers + (kReportBytes + 4) * plan_.job.revolutions;
+    return options_.table_bytes + 128 * layers + (kReportBytes + 4) * plan_.job.revolutions;
   }
 
   /// How many workers the budget holds; their share for images is in image_bytes_.
@@ -101,11 +97,12 @@ class Verifier {
     const std::int64_t all = options_.memory_bytes - shared_bytes();
     const std::int64_t each = worker_bytes() + image_bytes;
     if (all < each) {
-      return Error{ErrorCode::out_of_range, "memory budget of " + std::to_string(options_.memory_bytes / kMiB) +
-                                                " MiB: verifying this program needs at least " +
-                                                whole_mib(shared_bytes() + each) + " MiB, " + whole_mib(image_bytes) +
-                                                " of them to read its images and " + whole_mib(options_.program_bytes) +
-                                                " for the tables of its chunks: raise --memory"};
+      return Error{
+          ErrorCode::out_of_range,
+          "memory budget of " + std::to_string(options_.memory_bytes / kMiB) +
+              " MiB: verifying this program needs at least " + std::to_string(whole_mib(shared_bytes() + each)) +
+              " MiB, " + std::to_string(whole_mib(image_bytes)) + " of them to read its images and " +
+              std::to_string(whole_mib(options_.table_bytes)) + " for the tables of its chunks: raise --memory"};
     }
     const int wanted = options_.threads > 0 ? options_.threads : static_cast<int>(std::thread::hardware_concurrency());
     const std::int64_t tasks = std::max<std::int64_t>(1, static_cast<std::int64_t>(groups_.size()) * chunks_);

@@ -3,7 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
+
+#include "gravure/core/file_output.hpp"
 
 namespace gravure {
 
@@ -49,8 +52,12 @@ Result<void> BilevelSource::read_rows(std::int64_t first_row, std::int64_t row_c
 }
 
 Error BilevelSource::damage(std::int64_t row) const {
-  return {ErrorCode::bad_file, place() + "row " + std::to_string(row) +
-                                   ": the image data are damaged or truncated; copy or export the file again" +
+  const int reason = errno;  // of libtiff's last call of the system, if it made one
+  const std::string where = place() + "row " + std::to_string(row);
+  if (is_device_failure(reason)) {
+    return {ErrorCode::io, where + ": cannot be read: " + std::strerror(reason) + ": check the disk or the network"};
+  }
+  return {ErrorCode::bad_file, where + ": the image data are damaged or truncated; copy or export the file again" +
                                    handle_.messages().text()};
 }
 

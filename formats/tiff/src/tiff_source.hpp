@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -42,10 +43,14 @@ class BilevelSource : public ImageSource {
   virtual Result<void> read_checked(std::int64_t first_row, std::int64_t row_count, std::byte* out) = 0;
 
   TIFF* tiff() const noexcept { return handle_.get(); }
-  void clear_messages() noexcept { handle_.messages().clear(); }
+  void clear_messages() noexcept {
+    handle_.messages().clear();
+    errno = 0;
+  }
   /// A warning while decoding means that libtiff filled in what it could not read: damage all the same.
   bool said_anything() const noexcept { return handle_.messages().any(); }
   std::string place() const { return tiff_place(info_.path, info_.page); }
+  /// Of a row that could not be read since clear_messages(): io where the device failed, else bad_file.
   Error damage(std::int64_t row) const;
   /// Decodes a strip or tile of `bytes` bytes; false where it is damaged.
   bool decode_block(std::uint32_t number, std::byte* out, std::int64_t bytes);

@@ -1,5 +1,6 @@
 #include "gravure/report/layer_pictures.hpp"
 
+#include "gravure/core/units.hpp"
 #include "gravure/report/report_data.hpp"
 #include "report_support.hpp"
 
@@ -115,6 +116,23 @@ TEST(LayerPictures, ShowOneLayerAloneWhereAskedTo) {
   EXPECT_FALSE(made.value().layers[2].shares.empty());
   options.only_layer = 3;
   EXPECT_EQ(layer_pictures(opener(small), emulated(), options).error().code, ErrorCode::out_of_range);
+}
+
+TEST(LayerPictures, WorkWithAsManyWorkersAsTheBudgetHoldsAndNameAllOfItWhereItHoldsNone) {
+  SmallJob small;
+  prepare(small, LinesAlong::columns, Fires::white, 7);
+  LayerPicturesOptions options;
+  options.threads = 4;
+  options.table_bytes = 4 * kMiB;
+  options.memory_bytes = 11 * kMiB;  // for one
+  const Result<LayerPictures> made = layer_pictures(opener(small), emulated(), options);
+  EXPECT_TRUE(made) << made.error().message;
+  options.memory_bytes = 8 * kMiB;
+  const Result<LayerPictures> refused = layer_pictures(opener(small), emulated(), options);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+  EXPECT_NE(refused.error().message.find("budget of 8 MiB: turning this picture needs at least 11 MiB"),
+            std::string::npos)
+      << refused.error().message;
 }
 
 TEST(LayerPictures, StopWhenCancelled) {

@@ -1,6 +1,9 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <tiffio.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <random>
 
 #include "gravure/formats/tiff.hpp"
@@ -38,6 +41,39 @@ TEST(BilevelTiffRefuses, MissingFilesFoldersAndOtherThings) {
   expect_refused(folder / "short.tif", "is not a TIFF file");
   put_file(folder / "unfinished.tif", std::string("II\x2a\0\0\0\0\0", 8));
   expect_refused(folder / "unfinished.tif", "its directory was never written");
+}
+
+/// Reading the descriptors of `path` fails from now on as on a broken disk: no process has memory at its lowest
+/// addresses.
+void break_disk(const std::string& path) {
+  const int broken = ::open("/proc/self/mem", O_RDONLY | O_CLOEXEC);
+  ASSERT_GE(broken, 0);
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    if (std::filesystem::read_symlink(entry.path(), failed) == path) {
+      ASSERT_GE(::dup3(broken, std::stoi(entry.path().filename().string()), O_CLOEXEC), 0);
+    }
+  }
+  ::close(broken);
+}
+
+TEST(BilevelTiff, TellsAFailingDiskFromADamagedFile) {
+  const TempFolder folder;
+  const std::string path = std::filesystem::canonical(folder.path()).string() + "/a.tif";
+  for (const std::uint16_t codec : {kNone, kPackBits, kLzw, kG4}) {
+    for (const std::uint32_t tile_width : {0U, 64U}) {
+      TiffSpec spec{.compression = codec, .tile_width = tile_width};
+      write_tiff(path, {pattern(200, 64)}, spec);
+      const auto source = BilevelTiffOpener().open(path, 0);
+      ASSERT_TRUE(source) << source.error().message;
+      break_disk(path);
+      const auto read = read_all(*source.value());
+      ASSERT_FALSE(read);
+      EXPECT_EQ(read.error().code, ErrorCode::io) << read.error().message;
+      EXPECT_NE(read.error().message.find("row 0: cannot be read: Input/output error"), std::string::npos)
+          << codec_name(codec) << tile_width << ": " << read.error().message;
+    }
+  }
 }
 
 TEST(BilevelTiffRefuses, PagesThatAreNotThere) {

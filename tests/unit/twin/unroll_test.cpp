@@ -158,8 +158,8 @@ TEST(Unroll, CountsWhatTheReadersOfTheProgramShare) {
   prepare(small, LinesAlong::columns, 13, 45, 1);
   compile_job(small, 1, LayerOrder::sequence);
   EXPECT_TRUE(unroll_to_memory(small, 0, {.memory_bytes = 8 * kMiB}).result);
-  EXPECT_TRUE(unroll_to_memory(small, 0, {.memory_bytes = 12 * kMiB, .program_bytes = 4 * kMiB}).result);
-  const Result<void> refused = unroll_to_memory(small, 0, {.memory_bytes = 8 * kMiB, .program_bytes = 4 * kMiB}).result;
+  EXPECT_TRUE(unroll_to_memory(small, 0, {.memory_bytes = 12 * kMiB, .table_bytes = 4 * kMiB}).result);
+  const Result<void> refused = unroll_to_memory(small, 0, {.memory_bytes = 8 * kMiB, .table_bytes = 4 * kMiB}).result;
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
   EXPECT_NE(refused.error().message.find("needs at least 11 MiB"), std::string::npos) << refused.error().message;

@@ -297,9 +297,9 @@ TEST(Verify, CountsOnceWhatTheReadersOfTheProgramShare) {
   // A worker takes a little more than 6 MiB; verify() itself has a reader, too.
   EXPECT_EQ(readers_of({.memory_bytes = 20 * kMiB, .threads = 4}, report), 1 + 3);
   EXPECT_TRUE(report);
-  EXPECT_EQ(readers_of({.memory_bytes = 30 * kMiB, .program_bytes = 10 * kMiB, .threads = 4}, report), 1 + 3);
+  EXPECT_EQ(readers_of({.memory_bytes = 30 * kMiB, .table_bytes = 10 * kMiB, .threads = 4}, report), 1 + 3);
   EXPECT_TRUE(report);
-  EXPECT_EQ(readers_of({.memory_bytes = 20 * kMiB, .program_bytes = 14 * kMiB, .threads = 4}, report), 1);
+  EXPECT_EQ(readers_of({.memory_bytes = 20 * kMiB, .table_bytes = 14 * kMiB, .threads = 4}, report), 1);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::out_of_range);
   EXPECT_EQ(

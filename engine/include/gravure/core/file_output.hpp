@@ -40,6 +40,8 @@ Result<void> write_file(const std::string& path, std::string_view content);
 /// Why an input could not be opened, from errno: bad_file where the user can mend it (not there, not allowed, no file
 /// at all), io where the system fails.
 Error open_error(const std::string& path, int reason);
+/// Whether errno says that the device or the network failed, not that a file is short or wrong.
+bool is_device_failure(int reason);
 /// Reads a file of at most `max_bytes`; bad_file beyond or where it cannot be opened, io where reading breaks off.
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes);
 

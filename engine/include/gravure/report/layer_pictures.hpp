@@ -55,7 +55,7 @@ struct LayerPictures {
 
 struct LayerPicturesOptions {
   std::int64_t memory_bytes = std::int64_t{256} << 20;
-  std::int64_t program_bytes = 0;             ///< of them for what the readers of the program hold together
+  std::int64_t table_bytes = 0;               ///< of them for what the readers of the program hold together
   int threads = 0;                            ///< 0: one for each processor
   std::int64_t most_cells = 250'000;          ///< of a layer
   std::int64_t most_shown_cells = 4'000'000;  ///< of all shown layers

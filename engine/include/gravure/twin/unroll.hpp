@@ -12,7 +12,7 @@ namespace gravure {
 
 struct UnrollOptions {
   std::int64_t memory_bytes = std::int64_t{256} << 20;
-  std::int64_t program_bytes = 0;  ///< of them for what the readers of the program hold together
+  std::int64_t table_bytes = 0;  ///< of them for what the readers of the program hold together
   CancelToken* cancel = nullptr;
 };
 
@@ -25,6 +25,9 @@ struct UnrolledSize {
   std::int64_t height = 0;
 };
 UnrolledSize unrolled_size(const ProgramHeader& header);
+
+/// The budget that does for any picture of the program, its tables beside.
+std::int64_t least_unroll_bytes(const LineSource& program);
 
 /// Images the program shows: layers of the stack that are exposed at all.
 std::int64_t image_layers(const ProgramHeader& header);

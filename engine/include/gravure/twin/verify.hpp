@@ -79,8 +79,8 @@ struct BudgetOptions {
 
 struct VerifyOptions {
   std::int64_t memory_bytes = std::int64_t{256} << 20;
-  std::int64_t program_bytes = 0;  ///< of them for what the readers of the program hold together
-  int threads = 0;                 ///< 0: one for each processor
+  std::int64_t table_bytes = 0;  ///< of them for what the readers of the program hold together
+  int threads = 0;               ///< 0: one for each processor
   CancelToken* cancel = nullptr;
   Progress* progress = nullptr;
   std::optional<BudgetOptions> budget = {};

@@ -145,7 +145,7 @@ Result<VerifiedProgram> verify_program_file(GrvProgram program, const std::strin
     ProgressBar bar("verify");
     VerifyOptions verify_options;
     verify_options.memory_bytes = command.memory_bytes();
-    verify_options.program_bytes = program.table_bytes();
+    verify_options.table_bytes = program.table_bytes();
     verify_options.threads = command.threads;
     verify_options.cancel = &cancel_token();
     verify_options.progress = &bar;

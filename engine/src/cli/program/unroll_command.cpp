@@ -149,7 +149,7 @@ Result<int> run_unroll(const UnrollArguments& options, const Command& command) {
   GRAVURE_TRY(const BilevelTiffPage page, page_of(header, options, unrolled_size(header), shown));
   UnrollOptions unroll_options;
   unroll_options.memory_bytes = command.memory_bytes();
-  unroll_options.program_bytes = opened.table_bytes();
+  unroll_options.table_bytes = opened.table_bytes();
   unroll_options.cancel = &cancel_token();  // before there is a temporary file: from here on Ctrl-C takes it away again
   GRAVURE_TRY(BilevelTiffWriter writer, BilevelTiffWriter::create(options.output, page));
   std::vector<std::byte> inverted;

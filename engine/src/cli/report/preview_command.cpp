@@ -39,7 +39,7 @@ Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const
   ProgressBar bar("preview");
   report::LayerPicturesOptions pictures;
   pictures.memory_bytes = command.memory_bytes();
-  pictures.program_bytes = program.table_bytes();
+  pictures.table_bytes = program.table_bytes();
   pictures.threads = command.threads;
   pictures.cancel = &cancel_token();
   pictures.progress = &bar;

@@ -40,7 +40,7 @@ Result<WrittenReport> write_report(const ReportRequest& request, VerifiedProgram
     ProgressBar bar("layers");
     report::LayerPicturesOptions options;
     options.memory_bytes = command.memory_bytes();
-    options.program_bytes = verified.program.table_bytes();
+    options.table_bytes = verified.program.table_bytes();
     options.threads = command.threads;
     options.cancel = &cancel_token();
     options.progress = &bar;
