@@ -174,6 +174,7 @@ Result<StoredChunk> GrvSink::encode(ChunkAddress address, std::span<const std::b
   const auto whole = static_cast<std::size_t>(layout_.chunk_bytes());
   thread_local std::vector<std::byte> padded;
   if (bytes < whole) {
+    padded.reserve(whole);
     padded.assign(lines.begin(), lines.end());
     padded.resize(whole, std::byte{0});
   }

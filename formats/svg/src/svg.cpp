@@ -4,6 +4,9 @@
 #include <libxml/parser.h>
 #include <libxml/tree.h>
 
+// No colours are read here, and svgpp's parsers of them build a table of names whenever a program starts.
+#define SVGPP_USE_EXTERNAL_COLOR_PARSER
+#define SVGPP_USE_EXTERNAL_PAINT_PARSER
 #include <boost/mpl/set.hpp>
 #include <svgpp/policy/xml/libxml2.hpp>
 #include <svgpp/svgpp.hpp>
