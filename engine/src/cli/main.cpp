@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gravure/formats/grv.hpp"
 #include "log.hpp"
 #include "motion/motion_command.hpp"
 #include "report/report_command.hpp"
@@ -192,6 +193,7 @@ void keep_chunks() {
 
 int run(int argc, char** argv) {
   keep_chunks();
+  gravure::leave_hdf5_to_exit();
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   if (wants_json(arguments)) {
     gravure::cli::promise_json();

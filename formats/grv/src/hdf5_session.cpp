@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "gravure/formats/grv.hpp"
 #include "layout.hpp"
 
 namespace gravure::grv {
@@ -101,3 +102,11 @@ std::string hdf5_reason() {
 }
 
 }  // namespace gravure::grv
+
+namespace gravure {
+
+void leave_hdf5_to_exit() {
+  H5dont_atexit();
+}
+
+}  // namespace gravure
