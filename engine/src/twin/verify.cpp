@@ -71,6 +71,12 @@ class Verifier {
     return tally_;
   }
 
+  /// How many workers that only read the program the budget holds beside each other, of those that are wanted.
+  int reading_threads() const {
+    const std::int64_t fit = (options_.memory_bytes - shared_bytes()) / worker_bytes();
+    return static_cast<int>(std::clamp<std::int64_t>(fit, 1, wanted_threads()));
+  }
+
  private:
   class Worker;
   friend class Worker;
@@ -85,6 +91,10 @@ class Verifier {
   std::int64_t shared_bytes() const {
     const auto layers = static_cast<std::int64_t>(header_.layers.size());
     return options_.table_bytes + 128 * layers + (kReportBytes + 4) * plan_.job.revolutions;
+  }
+
+  int wanted_threads() const {
+    return options_.threads > 0 ? options_.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   }
 
   /// How many workers the budget holds; their share for images is in image_bytes_.
@@ -104,9 +114,8 @@ class Verifier {
               " MiB, " + std::to_string(whole_mib(image_bytes)) + " of them to read its images and " +
               std::to_string(whole_mib(options_.table_bytes)) + " for the tables of its chunks: raise --memory"};
     }
-    const int wanted = options_.threads > 0 ? options_.threads : static_cast<int>(std::thread::hardware_concurrency());
     const std::int64_t tasks = std::max<std::int64_t>(1, static_cast<std::int64_t>(groups_.size()) * chunks_);
-    const std::int64_t count = std::clamp<std::int64_t>(std::min<std::int64_t>(wanted, all / each), 1, tasks);
+    const std::int64_t count = std::clamp<std::int64_t>(std::min<std::int64_t>(wanted_threads(), all / each), 1, tasks);
     image_bytes_ = all / count - worker_bytes();
     return count;
   }
@@ -397,7 +406,9 @@ Result<VerifyReport> verify(const std::function<Result<std::unique_ptr<LineSourc
   VerifyReport report = judge(plan, axes, tally, static_cast<bool>(images));
   const std::optional<scan::JobTrajectory> trajectory = judge_scanner(header, report);
   if (options.budget) {
-    GRAVURE_CHECK(judge_budget(programs, trajectory, options, report));
+    VerifyOptions judged = options;
+    judged.threads = verifier.reading_threads();
+    GRAVURE_CHECK(judge_budget(programs, trajectory, judged, report));
   }
   return report;
 }

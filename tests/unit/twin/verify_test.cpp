@@ -299,6 +299,9 @@ TEST(Verify, CountsOnceWhatTheReadersOfTheProgramShare) {
   EXPECT_TRUE(report);
   EXPECT_EQ(readers_of({.memory_bytes = 30 * kMiB, .table_bytes = 10 * kMiB, .threads = 4}, report), 1 + 3);
   EXPECT_TRUE(report);
+  EXPECT_EQ(readers_of({.memory_bytes = 20 * kMiB, .threads = 40, .budget = BudgetOptions{}}, report), 2 * (1 + 3))
+      << "where pulses land is simulated within the budget, too";
+  EXPECT_TRUE(report);
   EXPECT_EQ(readers_of({.memory_bytes = 20 * kMiB, .table_bytes = 14 * kMiB, .threads = 4}, report), 1);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::out_of_range);
