@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "gravure/core/as_size.hpp"
 #include "gravure/raster/count.hpp"
@@ -21,6 +22,15 @@ int count_in_byte(std::byte byte, int from, int to) {
 
 std::int64_t cell_begin(std::int64_t index, std::int64_t cells, std::int64_t pixels) noexcept {
   return pixels / cells * index + pixels % cells * index / cells;  // index <= cells: no overflow below 2^31 cells
+}
+
+std::vector<std::int64_t> cell_sizes(std::int64_t cells, std::int64_t pixels) {
+  std::vector<std::int64_t> sizes;
+  sizes.reserve(as_size(cells));
+  for (std::int64_t index = 0; index < cells; ++index) {
+    sizes.push_back(cell_begin(index + 1, cells, pixels) - cell_begin(index, cells, pixels));
+  }
+  return sizes;
 }
 
 Extent choose_cells(const Extent& picture, double pixel_width, double pixel_height, std::int64_t most) {
@@ -54,17 +64,13 @@ std::int64_t count_between(std::span<const std::byte> row, std::int64_t from, st
          raster::popcount(row.subspan(as_size(first + 1), as_size(last - first - 1)));
 }
 
-AreaCount::AreaCount(const Extent& picture, const Extent& cells) : picture_(picture), cells_(cells) {
+AreaCount::AreaCount(const Extent& picture, const Extent& cells, CellRow counted)
+    : picture_(picture), cells_(cells), counted_(std::move(counted)) {
+  edges_.reserve(as_size(cells.width + 1));
   for (std::int64_t column = 0; column <= cells.width; ++column) {
     edges_.push_back(cell_begin(column, cells.width, picture.width));
   }
-  ones_.assign(as_size(cells.area()), 0);
-}
-
-std::int64_t AreaCount::pixels_of(std::int64_t column, std::int64_t row) const noexcept {
-  const std::int64_t rows =
-      cell_begin(row + 1, cells_.height, picture_.height) - cell_begin(row, cells_.height, picture_.height);
-  return (edges_[as_size(column + 1)] - edges_[as_size(column)]) * rows;
+  ones_.assign(as_size(cells.width), 0);
 }
 
 Result<void> AreaCount::add(std::span<const std::byte> rows, std::int64_t count) {
@@ -74,14 +80,14 @@ Result<void> AreaCount::add(std::span<const std::byte> rows, std::int64_t count)
                                               std::to_string(rows.size()) + " bytes, " +
                                               std::to_string(picture_.height - next_row_) + " rows are left"};
   }
-  for (std::int64_t i = 0; i < count; ++i, ++next_row_) {
-    while (next_row_ >= cell_begin(cell_row_ + 1, cells_.height, picture_.height)) {
-      ++cell_row_;
-    }
+  for (std::int64_t i = 0; i < count; ++i) {
     const auto row = rows.subspan(as_size(i * bytes), as_size(bytes));
-    const auto ones = std::span(ones_).subspan(as_size(cell_row_ * cells_.width), as_size(cells_.width));
-    for (std::size_t column = 0; column < ones.size(); ++column) {
-      ones[column] += count_between(row, edges_[column], edges_[column + 1]);
+    for (std::size_t column = 0; column < ones_.size(); ++column) {
+      ones_[column] += count_between(row, edges_[column], edges_[column + 1]);
+    }
+    if (++next_row_ == cell_begin(cell_row_ + 1, cells_.height, picture_.height)) {
+      counted_(cell_row_++, ones_);
+      std::fill(ones_.begin(), ones_.end(), 0);
     }
   }
   return {};

@@ -4,13 +4,16 @@
 #include <atomic>
 #include <map>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "gravure/core/as_size.hpp"
 #include "gravure/core/exposure_map.hpp"
+#include "gravure/core/units.hpp"
 #include "gravure/twin/unroll.hpp"
 #include "seam_window.hpp"
 
@@ -27,7 +30,8 @@ std::vector<std::pair<std::int64_t, std::int64_t>> images_of(const ProgramHeader
     }
     return images;
   }
-  for (std::int64_t r = 0; r < image_layers(header); ++r) {
+  const std::int64_t layers = image_layers(header);  // not for each of them: it goes through all
+  for (std::int64_t r = 0; r < layers; ++r) {
     const StoredLayer& stored = header.layers[header.layer_of_revolution[as_size(r)]];
     images.emplace_back(stored.source, stored.level);
   }
@@ -47,6 +51,8 @@ std::byte share_of(std::int64_t part, std::int64_t whole) {
   return static_cast<std::byte>((2 * 255 * part + whole) / (2 * whole));
 }
 
+using Programs = std::function<Result<std::unique_ptr<LineSource>>()>;
+
 /// Makes the pictures of layers, several at a time, and adds them up.
 class Work {
  public:
@@ -57,36 +63,35 @@ class Work {
         images_(images_of(header)),
         end_(static_cast<std::int64_t>(images_.size())) {
     const auto layers = static_cast<std::int64_t>(images_.size());
-    const std::int64_t shown =
-        options.only_layer
-            ? 1
-            : std::min({layers, options.most_shown_layers, std::max<std::int64_t>(1, options.most_shown_cells)});
-    shown_ = evenly(layers, shown);
+    shown_layers_ = std::min({options.only_layer ? 1 : layers, options.most_shown_layers,
+                              std::max<std::int64_t>(1, options.most_shown_cells)});
+    shown_ = evenly(layers, shown_layers_);
     revolutions_ = exposures_of_images(header);
     if (options.only_layer) {
       next_ = *options.only_layer;
       end_ = next_ + 1;
-      shown_.assign(shown_.size(), true);
+      shown_.assign(shown_.size(), shown_layers_ > 0);
       revolutions_.assign(revolutions_.size(), 0);
       revolutions_[as_size(next_)] = 1;
     }
-    plan_pictures(std::min(options.most_cells, options.most_shown_cells / shown));
+    plan_pictures(std::min(options.most_cells, options.most_shown_cells / std::max<std::int64_t>(1, shown_layers_)));
   }
 
-  std::int64_t layers() const { return options_.only_layer ? 1 : end_; }
-  void run(const std::function<Result<std::unique_ptr<LineSource>>()>& programs, std::int64_t memory_bytes) {
-    Result<std::unique_ptr<LineSource>> program = programs();
-    if (!program) {
-      fail(program.error());
-      return;
-    }
-    for (std::int64_t layer = next_++; layer < end_ && !failed_; layer = next_++) {
-      if (const Result<void> added = add(*program.value(), layer, memory_bytes); !added) {
-        fail(added.error());
+  Result<LayerPictures> run(const Programs& programs, const LineSource& program) {
+    GRAVURE_TRY(const std::int64_t count, divide_budget(program));
+    begin_pictures();
+    std::vector<std::thread> workers;
+    workers.reserve(as_size(count));
+    try {
+      for (std::int64_t i = 1; i < count; ++i) {
+        workers.emplace_back([&] { work(programs); });
       }
+    } catch (const std::system_error&) {  // no more threads to be had: those there are do it
     }
-  }
-  Result<LayerPictures> take() {
+    work(programs);
+    for (std::thread& worker : workers) {
+      worker.join();
+    }
     if (error_) {
       return *error_;
     }
@@ -94,6 +99,66 @@ class Work {
   }
 
  private:
+  std::int64_t layers() const { return options_.only_layer ? 1 : end_; }
+
+  /// What a worker holds beside what it unrolls: a row of cells, where its cells begin, and the seam.
+  std::int64_t worker_bytes() const { return 16 * (pictures_.cells.width + 1) + pictures_.seam_extent().area() / 8; }
+  /// The cells, whoever counts: pulses of all layers, shares of those that are shown.
+  std::int64_t cell_bytes() const { return (8 + shown_layers_) * pictures_.cells.area(); }
+  /// What all of them hold together beside the cells: sums along and across the line; pulses of the seam, again where
+  /// craters are added up, and their depth; the layers themselves.
+  std::int64_t shared_bytes() const {
+    constexpr std::int64_t kLayer = 256;
+    return options_.table_bytes + 32 * (pictures_.cells.width + pictures_.cells.height) +
+           (24 + shown_layers_) * pictures_.seam_extent().area() + kLayer * static_cast<std::int64_t>(images_.size());
+  }
+
+  /// How many workers the budget holds; what each may take to unroll is in unroll_bytes_.
+  Result<std::int64_t> divide_budget(const LineSource& program) {
+    const std::int64_t once = shared_bytes() + cell_bytes();
+    const std::int64_t each = worker_bytes() + least_unroll_bytes(program);
+    const std::int64_t later =
+        options_.later_bytes ? options_.later_bytes(pictures_.cells, pictures_.seam_extent(), shown_layers_) : 0;
+    const std::int64_t least = once + std::max(each, later);
+    if (options_.memory_bytes < least) {
+      return Error{ErrorCode::out_of_range,
+                   "memory budget of " + std::to_string(options_.memory_bytes / kMiB) +
+                       " MiB: drawing this program in " + std::to_string(pictures_.cells.width) + " x " +
+                       std::to_string(pictures_.cells.height) + " cells needs at least " +
+                       std::to_string(whole_mib(least)) + " MiB, " + std::to_string(whole_mib(cell_bytes())) +
+                       " of them for the cells and " + std::to_string(whole_mib(options_.table_bytes)) +
+                       " for the tables of its chunks: " + options_.remedy};
+    }
+    constexpr std::int64_t kMostWorkers = 4;
+    const std::int64_t wanted =
+        options_.threads > 0 ? options_.threads : std::max<std::int64_t>(1, std::thread::hardware_concurrency());
+    const std::int64_t all = options_.memory_bytes - once;
+    const std::int64_t count = std::max<std::int64_t>(1, std::min({wanted, kMostWorkers, layers(), all / each}));
+    unroll_bytes_ = all / count - worker_bytes() + options_.table_bytes;  // unrolling counts the tables itself
+    return count;
+  }
+
+  void work(const Programs& programs) {
+    try {
+      work_on_layers(programs);
+    } catch (const std::bad_alloc&) {
+      fail({ErrorCode::io, "out of memory: lower --memory or --threads"});
+    }
+  }
+
+  void work_on_layers(const Programs& programs) {
+    Result<std::unique_ptr<LineSource>> program = programs();
+    if (!program) {
+      fail(program.error());
+      return;
+    }
+    for (std::int64_t layer = next_++; layer < end_ && !failed_; layer = next_++) {
+      if (const Result<void> added = add(*program.value(), layer); !added) {
+        fail(added.error());
+      }
+    }
+  }
+
   void plan_pictures(std::int64_t most_cells) {
     const Plan& plan = header_.plan;
     const UnrolledSize size = unrolled_size(header_);
@@ -107,13 +172,12 @@ class Work {
     seam.columns = std::min(options_.most_seam_columns, image_columns(plan));
     seam.first_column = (image_columns(plan) - seam.columns) / 2;
     seam.lines_each = std::min(options_.most_seam_lines, plan.rotary.lines_per_revolution / 2);
-    const AreaCount empty(pictures_.picture, pictures_.cells);
-    for (std::int64_t row = 0; row < pictures_.cells.height; ++row) {
-      for (std::int64_t column = 0; column < pictures_.cells.width; ++column) {
-        pictures_.pixels.push_back(empty.pixels_of(column, row));
-      }
-    }
-    pictures_.pulses.assign(pictures_.pixels.size(), 0);
+  }
+
+  void begin_pictures() {
+    cell_widths_ = cell_sizes(pictures_.cells.width, pictures_.picture.width);
+    cell_heights_ = cell_sizes(pictures_.cells.height, pictures_.picture.height);
+    pictures_.pulses.assign(as_size(pictures_.cells.area()), 0);
     pictures_.seam_pulses.assign(as_size(pictures_.seam_extent().area()), 0);
     pictures_.layers.resize(images_.size());
     for (const std::int64_t revolutions : revolutions_) {
@@ -121,11 +185,20 @@ class Work {
     }
   }
 
-  Result<void> add(LineSource& program, std::int64_t layer, std::int64_t memory_bytes) {
-    AreaCount count(pictures_.picture, pictures_.cells);
+  Result<void> add(LineSource& program, std::int64_t layer) {
+    LayerPicture& picture = pictures_.layers[as_size(layer)];
+    picture.layer = layer;
+    picture.source = images_[as_size(layer)].first;
+    picture.level = images_[as_size(layer)].second;
+    picture.revolutions = revolutions_[as_size(layer)];
+    if (shown_[as_size(layer)]) {
+      picture.shares.reserve(as_size(pictures_.cells.area()));
+    }
+    AreaCount count(pictures_.picture, pictures_.cells,
+                    [&](std::int64_t row, std::span<const std::int64_t> ones) { keep(picture, row, ones); });
     SeamWindow seam(pictures_.picture, pictures_.seam_place, pictures_.lines_are_rows);
     UnrollOptions unroll_options;
-    unroll_options.memory_bytes = memory_bytes;
+    unroll_options.memory_bytes = unroll_bytes_;
     unroll_options.table_bytes = options_.table_bytes;
     unroll_options.cancel = options_.cancel;
     const RowSink sink = [&](std::span<const std::byte> rows, std::int64_t lines) -> Result<void> {
@@ -133,31 +206,37 @@ class Work {
       seam.add(rows, lines);
       return {};
     };
-    GRAVURE_CHECK(unroll_layer(program, devices_, layer, sink, unroll_options));
-    keep(layer, count, seam);
+    // The first revolutions show the images one after the other; unroll_layer() would go through all to know there is
+    // such a one.
+    GRAVURE_CHECK(header_.plan.carriage ? unroll_layer(program, devices_, layer, sink, unroll_options)
+                                        : unroll(program, devices_, layer, sink, unroll_options));
+    keep(picture, seam);
     return {};
   }
 
-  void keep(std::int64_t layer, const AreaCount& count, const SeamWindow& seam) {
+  void keep(LayerPicture& picture, std::int64_t row, std::span<const std::int64_t> ones) {
     const bool white = header_.fires == Fires::white;
+    const bool shown = shown_[as_size(picture.layer)];
     const std::scoped_lock lock(mutex_);
-    LayerPicture& picture = pictures_.layers[as_size(layer)];
-    picture.layer = layer;
-    picture.source = images_[as_size(layer)].first;
-    picture.level = images_[as_size(layer)].second;
-    picture.revolutions = revolutions_[as_size(layer)];
-    for (std::size_t cell = 0; cell < pictures_.pixels.size(); ++cell) {
-      const std::int64_t fired = white ? count.ones()[cell] : pictures_.pixels[cell] - count.ones()[cell];
+    const auto pulses = std::span(pictures_.pulses).subspan(as_size(row) * ones.size(), ones.size());
+    for (std::size_t column = 0; column < ones.size(); ++column) {
+      const std::int64_t pixels = cell_widths_[column] * cell_heights_[as_size(row)];
+      const std::int64_t fired = white ? ones[column] : pixels - ones[column];
       picture.fired_pixels += fired;
-      pictures_.pulses[cell] += fired * picture.revolutions;
-      if (shown_[as_size(layer)]) {
-        picture.shares.push_back(share_of(fired, pictures_.pixels[cell]));
+      pulses[column] += fired * picture.revolutions;
+      if (shown) {
+        picture.shares.push_back(share_of(fired, pixels));
       }
     }
+  }
+
+  void keep(LayerPicture& picture, const SeamWindow& seam) {
+    const bool white = header_.fires == Fires::white;
+    const std::scoped_lock lock(mutex_);
     for (std::size_t pixel = 0; pixel < seam.ones().size(); ++pixel) {
       const bool fired = seam.ones()[pixel] == white;
       pictures_.seam_pulses[pixel] += fired ? picture.revolutions : 0;
-      if (shown_[as_size(layer)]) {
+      if (shown_[as_size(picture.layer)]) {
         picture.seam.push_back(fired ? std::byte{255} : std::byte{0});
       }
     }
@@ -179,9 +258,13 @@ class Work {
   const LayerPicturesOptions& options_;
   std::vector<std::pair<std::int64_t, std::int64_t>> images_;
   std::int64_t end_;  ///< after the last layer that is made
+  std::int64_t shown_layers_ = 0;
   std::vector<bool> shown_;
   std::vector<std::int64_t> revolutions_;
+  std::int64_t unroll_bytes_ = 0;  ///< of each worker
   LayerPictures pictures_;
+  std::vector<std::int64_t> cell_widths_;  ///< in pixels
+  std::vector<std::int64_t> cell_heights_;
   std::atomic<std::int64_t> next_ = 0;
   std::atomic<bool> failed_ = false;
   std::mutex mutex_;  ///< of what follows, and of the pictures
@@ -191,14 +274,18 @@ class Work {
 
 /// Sums of the cells of each column along the line.
 void add_columns(LayerPictures& pictures) {
+  const std::vector<std::int64_t> widths = cell_sizes(pictures.cells.width, pictures.picture.width);
+  const std::vector<std::int64_t> heights = cell_sizes(pictures.cells.height, pictures.picture.height);
   const Extent& cells = pictures.cells;
   const std::int64_t columns = pictures.lines_are_rows ? cells.width : cells.height;
   pictures.column_pulses.assign(as_size(columns), 0);
   pictures.column_pixels.assign(as_size(columns), 0);
   for (std::int64_t cell = 0; cell < cells.area(); ++cell) {
-    const std::size_t column = as_size(pictures.lines_are_rows ? cell % cells.width : cell / cells.width);
+    const std::size_t x = as_size(cell % cells.width);
+    const std::size_t y = as_size(cell / cells.width);
+    const std::size_t column = pictures.lines_are_rows ? x : y;
     pictures.column_pulses[column] += pictures.pulses[as_size(cell)];
-    pictures.column_pixels[column] += pictures.pixels[as_size(cell)];
+    pictures.column_pixels[column] += widths[x] * heights[y];
   }
 }
 
@@ -231,22 +318,7 @@ Result<LayerPictures> layer_pictures(const std::function<Result<std::unique_ptr<
     return Error{ErrorCode::out_of_range, "--layer " + std::to_string(*options.only_layer) + ": the program has 0 to " +
                                               std::to_string(layers - 1)};
   }
-  Work work(header, devices, options);
-  const std::int64_t wanted =
-      options.threads > 0 ? options.threads : std::max<std::int64_t>(1, std::thread::hardware_concurrency());
-  const std::int64_t all = options.memory_bytes - options.table_bytes;
-  const std::int64_t fit = std::max<std::int64_t>(1, all / least_unroll_bytes(*program));
-  const std::int64_t workers = std::min<std::int64_t>({wanted, 4, work.layers(), fit});
-  const std::int64_t share = all / workers + options.table_bytes;  // so that a refusal names all of the budget
-  std::vector<std::thread> threads;
-  for (std::int64_t worker = 1; worker < workers; ++worker) {
-    threads.emplace_back([&] { work.run(programs, share); });
-  }
-  work.run(programs, share);
-  for (std::thread& thread : threads) {
-    thread.join();
-  }
-  GRAVURE_TRY(LayerPictures pictures, work.take());
+  GRAVURE_TRY(LayerPictures pictures, Work(header, devices, options).run(programs, *program));
   add_columns(pictures);
   return pictures;
 }

@@ -21,29 +21,56 @@ SeamSeries seam_series(const VerifyReport& verified, const Plan& plan, std::size
   return series;
 }
 
-Relief relief_of(const LayerPictures& pictures, const Plan& plan, const std::optional<PulseRemoval>& removal) {
-  Relief relief;
-  relief.in_um = removal.has_value();
+CellRelief::CellRelief(const LayerPictures& pictures, const Plan& plan, const std::optional<PulseRemoval>& removal)
+    : pictures_(pictures),
+      widths_(cell_sizes(pictures.cells.width, pictures.picture.width)),
+      heights_(cell_sizes(pictures.cells.height, pictures.picture.height)) {
   const Extent& cells = pictures.cells;
   const Incidence incidence(plan);
   const double pixel_um = to_double(plan.line.pixel_pitch_um);
   const double line_um = to_double(plan.rotary.line_pitch_um);
   const std::int64_t along = pictures.lines_are_rows ? cells.width : cells.height;
-  std::vector<double> per_pulse(static_cast<std::size_t>(along), 1.0);  // um, or pulses
+  per_pulse_.assign(static_cast<std::size_t>(along), 1.0);
   for (std::int64_t column = 0; removal && column < along; ++column) {
     const std::int64_t columns = image_columns(plan);
     const std::int64_t middle = (cell_begin(column, along, columns) + cell_begin(column + 1, along, columns) - 1) / 2;
-    per_pulse[static_cast<std::size_t>(column)] =
+    per_pulse_[static_cast<std::size_t>(column)] =
         removal->volume_um3(incidence.at_column_rad(middle)) / (pixel_um * line_um);
   }
+}
+
+double CellRelief::removed(std::int64_t column, std::int64_t row) const {
+  const auto cell = static_cast<std::size_t>(row * pictures_.cells.width + column);
+  const std::int64_t along = pictures_.lines_are_rows ? column : row;
+  return static_cast<double>(pictures_.pulses[cell]) * per_pulse_[static_cast<std::size_t>(along)];
+}
+
+double CellRelief::at(std::int64_t column, std::int64_t row) const {
+  const std::int64_t pixels = widths_[static_cast<std::size_t>(column)] * heights_[static_cast<std::size_t>(row)];
+  return removed(column, row) / static_cast<double>(pixels);
+}
+
+Relief relief_of(const LayerPictures& pictures, const Plan& plan, const std::optional<PulseRemoval>& removal,
+                 ReliefCells cells) {
+  Relief relief;
+  relief.in_um = removal.has_value();
+  const Incidence incidence(plan);
+  const double pixel_um = to_double(plan.line.pixel_pitch_um);
+  const double line_um = to_double(plan.rotary.line_pitch_um);
+  const CellRelief of_cell(pictures, plan, removal);
   double removed = 0;
-  for (std::int64_t cell = 0; cell < cells.area(); ++cell) {
-    const auto i = static_cast<std::size_t>(cell);
-    const std::int64_t column = pictures.lines_are_rows ? cell % cells.width : cell / cells.width;
-    const double of_pixels = static_cast<double>(pictures.pulses[i]) * per_pulse[static_cast<std::size_t>(column)];
-    relief.cells.push_back(of_pixels / static_cast<double>(pictures.pixels[i]));
-    relief.deepest = std::max(relief.deepest, relief.cells.back());
-    removed += of_pixels;
+  if (cells == ReliefCells::kept) {
+    relief.cells.reserve(static_cast<std::size_t>(pictures.cells.area()));
+  }
+  for (std::int64_t row = 0; row < pictures.cells.height; ++row) {
+    for (std::int64_t column = 0; column < pictures.cells.width; ++column) {
+      const double depth = of_cell.at(column, row);
+      relief.deepest = std::max(relief.deepest, depth);
+      removed += of_cell.removed(column, row);
+      if (cells == ReliefCells::kept) {
+        relief.cells.push_back(depth);
+      }
+    }
   }
   relief.mean = removed / static_cast<double>(pictures.picture.area());
   relief.seam.assign(pictures.seam_pulses.begin(), pictures.seam_pulses.end());

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "gravure/formats/png_writer.hpp"
 #include "gravure/formats/report_page.hpp"
@@ -180,8 +181,8 @@ Result<Json> layers_json(const report::ReportData& data) {
                 {"first_column", pictures.seam_place.first_column},
                 {"columns", pictures.seam_place.columns}}},
               {"exposures", pictures.exposures},
-              {"layers", layers},
-              {"columns", columns}};
+              {"layers", std::move(layers)},
+              {"columns", std::move(columns)}};
 }
 
 Json relief_json(const report::ReportData& data) {

@@ -8,17 +8,14 @@ namespace gravure {
 namespace {
 
 /// JSON inside a script element: no character can end it there.
-std::string script_safe(std::string_view json) {
-  std::string safe;
-  safe.reserve(json.size());
+void add_script_safe(std::string_view json, std::string& page) {
   for (const char c : json) {
     if (c == '<') {
-      safe += "\\u003c";
+      page += "\\u003c";
     } else {
-      safe += c;
+      page += c;
     }
   }
-  return safe;
 }
 
 /// What stands on the page where scripts are not run.
@@ -39,7 +36,10 @@ struct Parts {
 };
 
 std::string page_of(const Parts& parts, const std::vector<std::string>& violations, const std::string& json) {
-  std::string page = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  constexpr std::size_t kRest = 128 * 1024;  // style, title and verdict
+  std::string page;                          // may hold megabytes of pictures
+  page.reserve(json.size() + parts.body.size() + parts.view3d.size() + parts.script.size() + kRest);
+  page += "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   page += "<title>" + escape_html(parts.title.empty() ? parts.program : parts.title) + " - gravure report</title>\n";
   page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   // Nothing is fetched, and a page that is taken somewhere else cannot be made to.
@@ -50,7 +50,9 @@ std::string page_of(const Parts& parts, const std::vector<std::string>& violatio
   page += page_parts::style();
   page += "</style>\n</head>\n<body>\n<noscript>" + plain_verdict(violations) + "</noscript>\n";
   page += parts.body;
-  page += "<script type=\"application/json\" id=\"report-data\">" + script_safe(json) + "</script>\n<script>\n";
+  page += "<script type=\"application/json\" id=\"report-data\">";
+  add_script_safe(json, page);
+  page += "</script>\n<script>\n";
   page += parts.view3d;
   page += "</script>\n<script>\n";
   page += parts.script;

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
+#include <new>
+#include <string>
 #include <vector>
 
 namespace gravure {
@@ -40,6 +43,45 @@ TEST(PngWriter, IsReadBackAsItWasGiven) {
 TEST(PngWriter, GivesTheSameBytesForTheSamePixels) {
   const std::vector<std::byte> grey = pixels_of(100);
   EXPECT_EQ(encode_png({10, 10, 1, grey}).value(), encode_png({10, 10, 1, grey}).value());
+}
+
+TEST(PngWriter, GivesTheSameBytesRowByRow) {
+  for (const int samples : {1, 3}) {
+    const std::vector<std::byte> pixels = pixels_of(samples * 301 * 97);
+    const std::size_t row_bytes = static_cast<std::size_t>(samples) * 301;
+    std::string file;
+    const Result<void> written = write_png(
+        {301, 97, samples, {}},
+        [&](std::int64_t y, std::span<std::byte> row) -> Result<void> {
+          EXPECT_EQ(row.size(), row_bytes);
+          std::copy_n(pixels.begin() + y * static_cast<std::int64_t>(row_bytes), row_bytes, row.begin());
+          return {};
+        },
+        [&](std::span<const std::byte> piece) {
+          file.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+          return true;
+        });
+    ASSERT_TRUE(written) << written.error().message;
+    EXPECT_EQ(file, encode_png({301, 97, samples, pixels}).value());
+  }
+}
+
+TEST(PngWriter, StopsWhereARowOrTheFileFails) {
+  const PngRows grey = [](std::int64_t, std::span<std::byte>) -> Result<void> { return {}; };
+  const PngBytes keep = [](std::span<const std::byte>) { return true; };
+  const PngRows stop = [](std::int64_t y, std::span<std::byte>) -> Result<void> {
+    return y < 3 ? Result<void>() : Error{ErrorCode::cancelled, "stopped"};
+  };
+  EXPECT_EQ(write_png({9, 9, 1, {}}, stop, keep).error().code, ErrorCode::cancelled);
+  for (const std::size_t most : {0, 40}) {  // in the header, at the end
+    std::size_t bytes = 0;
+    const PngBytes full = [&](std::span<const std::byte> piece) { return (bytes += piece.size()) <= most; };
+    EXPECT_EQ(write_png({9, 9, 1, {}}, grey, full).error().code, ErrorCode::io);
+  }
+  const PngBytes greedy = [](std::span<const std::byte>) -> bool { throw std::bad_alloc(); };
+  EXPECT_EQ(write_png({9, 9, 1, {}}, grey, greedy).error().code, ErrorCode::io);
+  EXPECT_EQ(write_png({9, kMostPngSide + 1, 1, {}}, grey, keep).error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(write_png({9, 9, 2, {}}, grey, keep).error().code, ErrorCode::bad_argument);
 }
 
 TEST(PngWriter, RefusesSizesThatDoNotFit) {

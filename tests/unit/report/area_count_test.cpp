@@ -29,7 +29,11 @@ TEST(AreaCount, CountsEveryPixelOnceInTheCellItLiesIn) {
     for (std::byte& byte : bits) {
       byte = static_cast<std::byte>(dice.word() & 0xFFU);
     }
-    AreaCount count(picture, cells);
+    std::vector<std::int64_t> counted;
+    AreaCount count(picture, cells, [&](std::int64_t row, std::span<const std::int64_t> some) {
+      EXPECT_EQ(static_cast<std::int64_t>(counted.size()), row * cells.width);
+      counted.insert(counted.end(), some.begin(), some.end());
+    });
     for (std::int64_t row = 0; row < picture.height;) {  // rows come a few at a time
       const std::int64_t some = std::min(picture.height - row, dice.between(1, 7));
       ASSERT_TRUE(count.add(std::span(bits).subspan(static_cast<std::size_t>(row * row_bytes),
@@ -56,15 +60,19 @@ TEST(AreaCount, CountsEveryPixelOnceInTheCellItLiesIn) {
         ++pixels[cell];
       }
     }
-    ASSERT_EQ(std::vector<std::int64_t>(count.ones().begin(), count.ones().end()), ones);
+    ASSERT_EQ(counted, ones);
+    const std::vector<std::int64_t> widths = cell_sizes(cells.width, picture.width);
+    const std::vector<std::int64_t> heights = cell_sizes(cells.height, picture.height);
     for (std::int64_t cell = 0; cell < cells.area(); ++cell) {
-      ASSERT_EQ(count.pixels_of(cell % cells.width, cell / cells.width), pixels[static_cast<std::size_t>(cell)]);
+      ASSERT_EQ(
+          widths[static_cast<std::size_t>(cell % cells.width)] * heights[static_cast<std::size_t>(cell / cells.width)],
+          pixels[static_cast<std::size_t>(cell)]);
     }
   }
 }
 
 TEST(AreaCount, RefusesRowsBeyondThePicture) {
-  AreaCount count({10, 2}, {5, 1});
+  AreaCount count({10, 2}, {5, 1}, [](std::int64_t, std::span<const std::int64_t>) {});
   const std::vector<std::byte> rows(6);
   EXPECT_EQ(count.add(rows, 3).error().code, ErrorCode::bad_argument);
   EXPECT_EQ(count.add(rows, 1).error().code, ErrorCode::bad_argument);
@@ -108,17 +116,22 @@ TEST(AreaCount, CountsALayerOf37GigapixelsInTheCellsOfAPage) {
     std::fill_n(rows.begin() + row * row_bytes, row_bytes - 1, std::byte{0x80});
     rows[static_cast<std::size_t>((row + 1) * row_bytes - 1)] = std::byte{0x80};  // 4 pixels are left in it
   }
-  AreaCount count(picture, cells);
+  std::vector<std::int64_t> counted;
+  AreaCount count(picture, cells, [&](std::int64_t, std::span<const std::int64_t> some) {
+    counted.insert(counted.end(), some.begin(), some.end());
+  });
   for (std::int64_t row = 0; row < picture.height; row += kRows) {
     ASSERT_TRUE(count.add(rows, kRows));
   }
   ASSERT_TRUE(count.complete());
+  const std::vector<std::int64_t> widths = cell_sizes(cells.width, picture.width);
+  const std::vector<std::int64_t> heights = cell_sizes(cells.height, picture.height);
   std::int64_t ones = 0;
   std::int64_t pixels = 0;
   for (std::int64_t row = 0; row < cells.height; ++row) {
     for (std::int64_t column = 0; column < cells.width; ++column) {
-      const std::int64_t in_cell = count.pixels_of(column, row);
-      const std::int64_t fired = count.ones()[static_cast<std::size_t>(row * cells.width + column)];
+      const std::int64_t in_cell = widths[static_cast<std::size_t>(column)] * heights[static_cast<std::size_t>(row)];
+      const std::int64_t fired = counted[static_cast<std::size_t>(row * cells.width + column)];
       ones += fired;
       pixels += in_cell;
       ASSERT_NEAR(static_cast<double>(fired) / static_cast<double>(in_cell), 1.0 / 16, 0.002) << column << ", " << row;

@@ -1,5 +1,9 @@
 #include "gravure/report/layer_pictures.hpp"
 
+#include <atomic>
+#include <chrono>
+#include <new>
+
 #include "gravure/core/units.hpp"
 #include "gravure/report/report_data.hpp"
 #include "report_support.hpp"
@@ -130,9 +134,90 @@ TEST(LayerPictures, WorkWithAsManyWorkersAsTheBudgetHoldsAndNameAllOfItWhereItHo
   options.memory_bytes = 8 * kMiB;
   const Result<LayerPictures> refused = layer_pictures(opener(small), emulated(), options);
   EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
-  EXPECT_NE(refused.error().message.find("budget of 8 MiB: turning this picture needs at least 11 MiB"),
-            std::string::npos)
-      << refused.error().message;
+  EXPECT_EQ(refused.error().message,
+            "memory budget of 8 MiB: drawing this program in 26 x 45 cells needs at least 11 MiB, 1 of them for the "
+            "cells and 4 for the tables of its chunks: raise --memory");
+}
+
+/// Opens programs, says how many were opened, and fails as it is told to.
+struct Opened {
+  explicit Opened(const SmallJob& small) : open(opener(small)) {}
+  Result<LayerPictures> pictures(const LayerPicturesOptions& options) {
+    readers = 0;
+    return layer_pictures(
+        [this]() -> Result<std::unique_ptr<LineSource>> {
+          if (readers++ > 0 && greedy) {
+            throw std::bad_alloc();
+          }
+          return open();
+        },
+        emulated(), options);
+  }
+  std::function<Result<std::unique_ptr<LineSource>>()> open;
+  std::atomic<int> readers = 0;
+  bool greedy = false;
+};
+
+TEST(LayerPictures, CountTheirCellsInTheBudget) {
+  SmallJob small;
+  prepare(small, LinesAlong::rows, Fires::white, 3, 1000, 1000);
+  Opened opened(small);
+  LayerPicturesOptions options;
+  options.most_cells = options.most_shown_cells = 3'000'000;
+  options.most_shown_layers = 0;  // a million cells: 8 MB of pulses
+  options.threads = 4;
+  options.remedy = "raise --memory, or lower --width, which is 1000";
+  options.memory_bytes = 15 * kMiB;
+  const Result<LayerPictures> made = opened.pictures(options);
+  EXPECT_TRUE(made) << made.error().message;
+  EXPECT_EQ(opened.readers, 1 + 1) << "one worker; there is one reader to plan with";
+  options.memory_bytes = 8 * kMiB;
+  const Result<LayerPictures> refused = opened.pictures(options);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(refused.error().message,
+            "memory budget of 8 MiB: drawing this program in 1000 x 1000 cells needs at least 15 MiB, 8 of them for "
+            "the cells and 0 for the tables of its chunks: raise --memory, or lower --width, which is 1000");
+  options.most_shown_layers = 3;  // 3 bytes a cell more
+  options.memory_bytes = 15 * kMiB;
+  EXPECT_EQ(opened.pictures(options).error().code, ErrorCode::out_of_range);
+  options.memory_bytes = 30 * kMiB;
+  EXPECT_TRUE(opened.pictures(options));
+  EXPECT_EQ(opened.readers, 1 + 3);
+  options.later_bytes = [](const Extent& cells, const Extent&, std::int64_t shown_layers) {
+    return shown_layers * 12 * cells.area();  // made of the pictures when the workers are gone
+  };
+  EXPECT_EQ(opened.pictures(options).error().code, ErrorCode::out_of_range);
+}
+
+TEST(LayerPictures, RunOutOfMemoryWithAnError) {
+  SmallJob small;
+  prepare(small, LinesAlong::rows, Fires::white, 3);
+  Opened opened(small);
+  opened.greedy = true;
+  for (const int threads : {1, 3}) {
+    LayerPicturesOptions options;
+    options.threads = threads;
+    const Result<LayerPictures> failed = opened.pictures(options);
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(failed.error().code, ErrorCode::io);
+    EXPECT_EQ(failed.error().message, "out of memory: lower --memory or --threads");
+  }
+}
+
+/// Where each of them goes through all, it is minutes.
+TEST(LayerPictures, Of65536LevelsAreNumberedAtOnce) {
+  constexpr std::uint32_t kLevels = 65'536;
+  ProgramHeader header;
+  header.plan.job.revolutions = kLevels;
+  for (std::uint32_t level = 0; level < kLevels; ++level) {
+    StoredLayer layer;
+    layer.level = level;
+    header.layers.push_back(layer);
+    header.layer_of_revolution.push_back(level);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(exposures_of_images(header), std::vector<std::int64_t>(kLevels, 1));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
 TEST(LayerPictures, StopWhenCancelled) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,31 +19,33 @@ struct Extent {
 
 /// Where cell `index` of `cells` begins among `pixels`: floor(index * pixels / cells). Cells cover every pixel once.
 std::int64_t cell_begin(std::int64_t index, std::int64_t cells, std::int64_t pixels) noexcept;
+/// The pixels of each of `cells` cells.
+std::vector<std::int64_t> cell_sizes(std::int64_t cells, std::int64_t pixels);
 
 /// How many cells a picture is shown in: at most `most`, about square on the workpiece where a pixel is `pixel_width`
 /// by `pixel_height` of any unit, and never more than its pixels.
 Extent choose_cells(const Extent& picture, double pixel_width, double pixel_height, std::int64_t most);
 
 /// Counts the ones of a bilevel picture cell by cell, exactly, as its rows come: the average over the area of a cell is
-/// its count over its pixels. Takes the memory of its cells, whatever the picture.
+/// its count over its pixels. Takes the memory of a row of cells, whatever the picture.
 class AreaCount {
  public:
+  /// Takes a row of cells that is counted: its number from the top, and the ones of each of its cells.
+  using CellRow = std::function<void(std::int64_t row, std::span<const std::int64_t> ones)>;
+
   /// 1 <= cells <= picture, in both directions.
-  AreaCount(const Extent& picture, const Extent& cells);
+  AreaCount(const Extent& picture, const Extent& cells, CellRow counted);
   /// The next `count` rows, packed MSB first. Fails with bad_argument beyond the picture.
   Result<void> add(std::span<const std::byte> rows, std::int64_t count);
 
-  const Extent& picture() const noexcept { return picture_; }
-  const Extent& cells() const noexcept { return cells_; }
-  std::span<const std::int64_t> ones() const noexcept { return ones_; }  ///< row by row
-  std::int64_t pixels_of(std::int64_t column, std::int64_t row) const noexcept;
   bool complete() const noexcept { return next_row_ == picture_.height; }
 
  private:
   Extent picture_;
   Extent cells_;
   std::vector<std::int64_t> edges_;  ///< first pixel of each column of cells, and the width
-  std::vector<std::int64_t> ones_;
+  CellRow counted_;
+  std::vector<std::int64_t> ones_;  ///< of the cells of cell_row_
   std::int64_t next_row_ = 0;
   std::int64_t cell_row_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gravure/core/program.hpp"
@@ -41,7 +42,6 @@ struct LayerPictures {
   bool lines_are_rows = true;  ///< else lines run down the picture
   std::vector<LayerPicture> layers;
   std::vector<std::int64_t> pulses;         ///< of all revolutions, a cell each
-  std::vector<std::int64_t> pixels;         ///< of a cell
   std::vector<std::int64_t> seam_pulses;    ///< of all revolutions, a pixel of the seam each
   std::vector<std::int64_t> column_pulses;  ///< of all revolutions, by the columns of cells along the line
   std::vector<std::int64_t> column_pixels;  ///< pixels of such a column
@@ -55,12 +55,16 @@ struct LayerPictures {
 
 struct LayerPicturesOptions {
   std::int64_t memory_bytes = std::int64_t{256} << 20;
-  std::int64_t table_bytes = 0;               ///< of them for what the readers of the program hold together
+  std::int64_t table_bytes = 0;  ///< of them for what the readers of the program hold together
+  /// Of them for what is made of the pictures when the workers are gone, by what is drawn; none: nothing worth
+  /// counting.
+  std::function<std::int64_t(const Extent& cells, const Extent& seam, std::int64_t shown_layers)> later_bytes = {};
+  std::string remedy = "raise --memory";      ///< where memory_bytes are too few
   int threads = 0;                            ///< 0: one for each processor
   std::int64_t most_cells = 250'000;          ///< of a layer
   std::int64_t most_shown_cells = 4'000'000;  ///< of all shown layers
-  std::int64_t most_shown_layers = 96;
-  std::int64_t most_seam_lines = 80;  ///< on either side
+  std::int64_t most_shown_layers = 96;        ///< 0: pulses alone are wanted
+  std::int64_t most_seam_lines = 80;          ///< on either side
   std::int64_t most_seam_columns = 320;
   std::optional<std::int64_t> only_layer = {};  ///< none: all; else this one, once
   CancelToken* cancel = nullptr;
@@ -69,7 +73,7 @@ struct LayerPicturesOptions {
 
 /// Runs every image once on devices made by `devices` and counts what was exposed; memory does not grow with their
 /// size. With only_layer the others have no picture and no pulses. Fails as unroll_layer() does, and with out_of_range
-/// where there is no such layer.
+/// where there is no such layer or the budget does not hold the cells and a worker.
 Result<LayerPictures> layer_pictures(const std::function<Result<std::unique_ptr<LineSource>>()>& programs,
                                      const DeviceFactory& devices, const LayerPicturesOptions& options);
 

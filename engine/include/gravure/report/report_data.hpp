@@ -18,13 +18,30 @@ namespace gravure::report {
 /// does not say what one removes.
 struct Relief {
   bool in_um = false;
-  std::vector<double> cells;  ///< mean over the area of a cell
+  std::vector<double> cells;  ///< mean over the area of a cell; empty where they were not asked for
   std::vector<double> seam;   ///< pixels about the seam, every crater of its own
   double deepest = 0;         ///< of the cells
   double mean = 0;            ///< over the whole picture
   double seam_deepest = 0;
 };
-Relief relief_of(const LayerPictures& pictures, const Plan& plan, const std::optional<PulseRemoval>& removal);
+enum class ReliefCells : std::uint8_t { kept, left_out };
+Relief relief_of(const LayerPictures& pictures, const Plan& plan, const std::optional<PulseRemoval>& removal,
+                 ReliefCells cells = ReliefCells::kept);
+
+/// What is left of the surface in one cell after the other, as Relief::cells has it, without room for all of them.
+class CellRelief {
+ public:
+  /// `pictures` must outlive it.
+  CellRelief(const LayerPictures& pictures, const Plan& plan, const std::optional<PulseRemoval>& removal);
+  double at(std::int64_t column, std::int64_t row) const;       ///< mean over the area of the cell
+  double removed(std::int64_t column, std::int64_t row) const;  ///< times its pixels
+
+ private:
+  const LayerPictures& pictures_;
+  std::vector<double> per_pulse_;     ///< um, or pulses, by the columns of cells along the line
+  std::vector<std::int64_t> widths_;  ///< of cells, in pixels
+  std::vector<std::int64_t> heights_;
+};
 
 /// The seam after a revolution, as the twin has it.
 struct SeamPoint {

@@ -30,7 +30,8 @@ std::vector<ShownLayer> shown_layers(const ProgramHeader& header) {
     return shown;
   }
   const std::vector<std::int64_t> images = images_of_layers(header);
-  for (std::int64_t layer = 0; layer < image_layers(header); ++layer) {
+  const std::int64_t layers = image_layers(header);  // not for each of them: it goes through all
+  for (std::int64_t layer = 0; layer < layers; ++layer) {
     shown.push_back({origin_of(header, layer), std::nullopt, header.plan.carriage ? header.plan.job.revolutions : 0});
   }
   std::set<std::pair<std::int64_t, std::int64_t>> counted;  // image and band: passes back show what others have shown

@@ -5,8 +5,10 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "gravure/formats/png_writer.hpp"
+#include "text_output.hpp"
 
 namespace gravure::cli {
 
@@ -69,43 +71,75 @@ Result<void> check_png_name(const std::string& path) {
   return {};
 }
 
-Canvas::Canvas(const report::Extent& size) : size_(size) {
-  pixels_.reserve(static_cast<std::size_t>(3 * size.area()));
-  for (std::int64_t i = 0; i < size.area(); ++i) {
-    for (const std::uint8_t sample : Colour::paper().samples) {
-      pixels_.push_back(static_cast<std::byte>(sample));
-    }
-  }
+std::function<double(std::int64_t, std::int64_t)> shares_of_rows(std::vector<double> shares, std::int64_t width) {
+  return [shares = std::move(shares), width](std::int64_t column, std::int64_t row) {
+    return shares[static_cast<std::size_t>(row * width + column)];
+  };
 }
 
-void Canvas::put(std::int64_t x, std::int64_t y, const Colour& colour) {
+void Canvas::put(std::span<std::byte> row, std::int64_t x, const Colour& colour) {
   for (std::size_t k = 0; k < 3; ++k) {
-    pixels_[static_cast<std::size_t>(3 * (y * size_.width + x)) + k] = static_cast<std::byte>(colour.samples[k]);
+    row[static_cast<std::size_t>(3 * x) + k] = static_cast<std::byte>(colour.samples[k]);
   }
 }
 
-void Canvas::draw(const PicturePart& part, Ramp ramp) {
-  for (std::int64_t y = 0; y < part.size.height; ++y) {
-    for (std::int64_t x = 0; x < part.size.width; ++x) {
-      const std::int64_t value =
-          y * part.values.height / part.size.height * part.values.width + x * part.values.width / part.size.width;
-      put(x, part.top + y, Colour::of(part.shares[static_cast<std::size_t>(value)], ramp));
+void Canvas::draw_row(const Drawn& drawn, std::int64_t y, std::span<std::byte> row) {
+  const PicturePart& part = drawn.part;
+  const std::int64_t value_row = y * part.values.height / part.size.height;
+  std::int64_t shown = -1;
+  Colour colour = Colour::paper();
+  for (std::int64_t x = 0; x < part.size.width; ++x) {
+    const std::int64_t column = x * part.values.width / part.size.width;
+    if (column != shown) {
+      colour = Colour::of(part.share(column, value_row), drawn.ramp);
+      shown = column;
     }
+    put(row, x, colour);
   }
 }
 
-void Canvas::draw_seam(const PicturePart& part, bool across) {
-  const std::int64_t length = across ? part.size.width : part.size.height;
-  for (std::int64_t i = 0; i < length; ++i) {
-    if (i / 8 % 2 == 0) {
-      across ? put(i, part.top + part.size.height / 2, Colour::seam())
-             : put(part.size.width / 2, part.top + i, Colour::seam());
+void Canvas::draw_seam(const Drawn& drawn, std::int64_t y, std::span<std::byte> row) {
+  constexpr std::int64_t kDash = 8;
+  const report::Extent& size = drawn.part.size;
+  if (*drawn.seam_across && y == size.height / 2) {
+    for (std::int64_t x = 0; x < size.width; ++x) {
+      if (x / kDash % 2 == 0) {
+        put(row, x, Colour::seam());
+      }
     }
+  } else if (!*drawn.seam_across && y / kDash % 2 == 0) {
+    put(row, size.width / 2, Colour::seam());
   }
 }
 
-Result<std::string> Canvas::png() const {
-  return encode_png({size_.width, size_.height, 3, pixels_});
+Result<void> Canvas::write(const std::string& path) const {
+  GRAVURE_TRY(TextOutput output, TextOutput::create(path));
+  const PngRows rows = [this](std::int64_t y, std::span<std::byte> row) -> Result<void> {
+    GRAVURE_CHECK(check_not_stopped());
+    for (std::int64_t x = 0; x < size_.width; ++x) {
+      put(row, x, Colour::paper());
+    }
+    for (const Drawn& drawn : parts_) {
+      if (const std::int64_t within = y - drawn.part.top; within >= 0 && within < drawn.part.size.height) {
+        draw_row(drawn, within, row);
+        if (drawn.seam_across) {
+          draw_seam(drawn, within, row);
+        }
+      }
+    }
+    return {};
+  };
+  const PngBytes bytes = [&output](std::span<const std::byte> piece) {
+    output.text().append(reinterpret_cast<const char*>(piece.data()), piece.size());
+    return output.flush(false);
+  };
+  const Result<void> written = write_png({size_.width, size_.height, 3, {}}, rows, bytes);
+  if (!written && output.flush(true)) {  // not for the disk, which is told below
+    return written.error();
+  }
+  std::vector<TextOutput> files;
+  files.push_back(std::move(output));
+  return commit_together(std::move(files));
 }
 
 }  // namespace gravure::cli

@@ -2,6 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,8 +23,10 @@ struct PicturePart {
   report::Extent values;
   report::Extent size;  ///< on the picture
   std::int64_t top = 0;
-  std::vector<double> shares;  ///< 0 to 1, row by row; below 0: nothing there
+  std::function<double(std::int64_t column, std::int64_t row)> share;  ///< 0 to 1; below 0: nothing there
 };
+/// The shares of a part that stand row by row.
+std::function<double(std::int64_t, std::int64_t)> shares_of_rows(std::vector<double> shares, std::int64_t width);
 
 /// {"left", "top", "width", "height"} of a part, in pixels.
 Json place_json(const PicturePart& part);
@@ -32,21 +37,29 @@ report::Extent size_in_frame(const report::Extent& values, double aspect, std::i
 /// bad_argument where the name does not end in .png (any case): pictures are written as PNG.
 Result<void> check_png_name(const std::string& path);
 
-/// A picture to draw parts on.
+/// A picture to put parts on, which are drawn row by row as it is written.
 class Canvas {
  public:
-  explicit Canvas(const report::Extent& size);
-  void draw(const PicturePart& part, Ramp ramp);
-  /// The seam through the middle of a part, dashed.
-  void draw_seam(const PicturePart& part, bool across);
-  Result<std::string> png() const;
+  explicit Canvas(const report::Extent& size) : size_(size) {}
+  void draw(const PicturePart& part, Ramp ramp) { parts_.push_back({part, ramp, std::nullopt}); }
+  /// And the seam through the middle of the part, dashed.
+  void draw_with_seam(const PicturePart& part, Ramp ramp, bool across) { parts_.push_back({part, ramp, across}); }
+  /// The whole PNG, or none where the user has stopped before.
+  Result<void> write(const std::string& path) const;
 
  private:
   struct Colour;
-  void put(std::int64_t x, std::int64_t y, const Colour& colour);
+  struct Drawn {
+    PicturePart part;
+    Ramp ramp;
+    std::optional<bool> seam_across;
+  };
+  static void put(std::span<std::byte> row, std::int64_t x, const Colour& colour);
+  static void draw_row(const Drawn& drawn, std::int64_t y, std::span<std::byte> row);
+  static void draw_seam(const Drawn& drawn, std::int64_t y, std::span<std::byte> row);
 
   report::Extent size_;
-  std::vector<std::byte> pixels_;
+  std::vector<Drawn> parts_;
 };
 
 }  // namespace gravure::cli

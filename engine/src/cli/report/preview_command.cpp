@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/job_file.hpp"
@@ -14,7 +13,6 @@
 #include "report/preview_path.hpp"
 #include "report/report_command.hpp"
 #include "report/report_writer.hpp"
-#include "text_output.hpp"
 
 namespace gravure::cli {
 namespace {
@@ -26,11 +24,8 @@ struct PreviewArguments {
   std::int64_t width = 1600;
 };
 
-std::vector<double> shares_of(std::vector<double> values, double most) {
-  for (double& value : values) {
-    value = most > 0 ? value / most : 0;
-  }
-  return values;
+double share_of(double value, double most) {
+  return most > 0 ? value / most : 0;
 }
 
 Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const GrvProgram& program,
@@ -44,12 +39,14 @@ Result<report::LayerPictures> pictures_of(const PreviewArguments& options, const
   pictures.cancel = &cancel_token();
   pictures.progress = &bar;
   pictures.only_layer = options.layer;
+  pictures.most_shown_layers = 0;  // what is drawn are pulses, of one layer or all
+  pictures.remedy = fmt::format("raise --memory, or lower --width, which is {}", options.width);
   const UnrolledSize size = unrolled_size(header);
   const double aspect = to_double(header.plan.rotary.line_pitch_um) / to_double(header.plan.line.pixel_pitch_um);
   const bool rows = header.lines_along == LinesAlong::rows;
   const report::Extent wanted =
       size_in_frame({size.width, size.height}, rows ? aspect : 1 / aspect, options.width, 2 * options.width);
-  constexpr std::int64_t kMostCells = 4'000'000;  // of every worker, 8 bytes each
+  constexpr std::int64_t kMostCells = 4'000'000;  // 8 bytes each
   pictures.most_cells = std::min(wanted.area(), kMostCells);
   pictures.most_shown_cells = pictures.most_cells;
   const auto programs = [&program]() -> Result<std::unique_ptr<LineSource>> { return program.reader(); };
@@ -72,7 +69,8 @@ Result<int> run_preview(const PreviewArguments& options, const Command& command)
   const bool depth = !options.layer;
   // One layer is shown as what fired, all of them as what is left of the surface.
   const std::optional<report::PulseRemoval> removal = depth ? report::pulse_removal(job.laser) : std::nullopt;
-  const report::Relief relief = report::relief_of(pictures, header.plan, removal);
+  const report::Relief relief = report::relief_of(pictures, header.plan, removal, report::ReliefCells::left_out);
+  const report::CellRelief relief_of_cell(pictures, header.plan, removal);
   const bool rows = pictures.lines_are_rows;
   const double line_um = to_double(header.plan.rotary.line_pitch_um);
   const double pixel_um = to_double(header.plan.line.pixel_pitch_um);
@@ -84,18 +82,20 @@ Result<int> run_preview(const PreviewArguments& options, const Command& command)
                              cells_per(pictures.picture.width, pictures.cells.width);
   const double most = depth ? relief.deepest : 1;
   const double seam_most = depth ? relief.seam_deepest : 1;
-  PicturePart whole{pictures.cells, size_in_frame(pictures.cells, cell_aspect, options.width, 2 * options.width), 0,
-                    shares_of(relief.cells, most)};
+  const PicturePart whole{
+      pictures.cells, size_in_frame(pictures.cells, cell_aspect, options.width, 2 * options.width), 0,
+      [&](std::int64_t column, std::int64_t row) { return share_of(relief_of_cell.at(column, row), most); }};
   const report::Extent seam_extent = pictures.seam_extent();
-  PicturePart seam{seam_extent, size_in_frame(seam_extent, aspect, options.width, options.width),
-                   whole.size.height + kPictureGap, shares_of(relief.seam, seam_most)};
+  const PicturePart seam{seam_extent, size_in_frame(seam_extent, aspect, options.width, options.width),
+                         whole.size.height + kPictureGap, [&](std::int64_t column, std::int64_t row) {
+                           return share_of(relief.seam[static_cast<std::size_t>(row * seam_extent.width + column)],
+                                           seam_most);
+                         }};
   const report::Extent all{std::max(whole.size.width, seam.size.width), seam.top + seam.size.height};
   Canvas canvas(all);
   canvas.draw(whole, depth ? Ramp::depth : Ramp::fired);
-  canvas.draw(seam, depth ? Ramp::depth : Ramp::fired);
-  canvas.draw_seam(seam, rows);
-  GRAVURE_TRY(const std::string png, canvas.png());
-  GRAVURE_CHECK(write_texts({{options.output, png}}));
+  canvas.draw_with_seam(seam, depth ? Ramp::depth : Ramp::fired, rows);
+  GRAVURE_CHECK(canvas.write(options.output));
   const char* unit = relief.in_um ? "um" : "pulses";
   if (command.json) {
     Json json = {{"picture", options.output},

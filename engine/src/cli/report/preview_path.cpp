@@ -74,14 +74,15 @@ Result<int> preview_path(LineSource& program, const std::string& output, std::in
   std::vector<double> pulses = map.pulses();
   const double most = *std::max_element(pulses.begin(), pulses.end());
   const report::Extent size = size_in_frame(map.cells(), 1, width, width);
-  const PicturePart number{map.cells(), size, 0, shares_of_pulses(std::move(pulses), most)};
-  const PicturePart height{map.cells(), size, size.height + kPictureGap, shares_of_heights(map)};
+  const PicturePart number{map.cells(), size, 0,
+                           shares_of_rows(shares_of_pulses(std::move(pulses), most), map.cells().width)};
+  const PicturePart height{map.cells(), size, size.height + kPictureGap,
+                           shares_of_rows(shares_of_heights(map), map.cells().width)};
   const report::Extent all{size.width, height.top + size.height};
   Canvas canvas(all);
   canvas.draw(number, Ramp::fired);
   canvas.draw(height, Ramp::depth);
-  GRAVURE_TRY(const std::string png, canvas.png());
-  GRAVURE_CHECK(write_texts({{output, png}}));
+  GRAVURE_CHECK(canvas.write(output));
   const double cell_um = map.cell_mm() * kUmPerMm;
   const double lowest_mm = rounded(map.lowest_mm(), 6);
   const double highest_mm = rounded(map.highest_mm(), 6);

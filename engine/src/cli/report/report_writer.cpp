@@ -3,13 +3,29 @@
 #include <algorithm>
 #include <utility>
 
+#include "gravure/core/units.hpp"
 #include "gravure/formats/grv.hpp"
 #include "gravure/formats/report_page.hpp"
+#include "gravure/twin/unroll.hpp"
 #include "program/program_files.hpp"
 #include "text_output.hpp"
 #include "texture/freeform_job.hpp"
 
 namespace gravure::cli {
+
+namespace {
+
+/// What a page takes beside its pictures at the most: the depth of cells, its data as JSON, as text that grew, and in
+/// the page. PNG does not shorten noise; of the seam a pixel is a bit.
+std::int64_t page_bytes(const report::Extent& cells, const report::Extent& seam, std::int64_t shown_layers,
+                        std::int64_t layers) {
+  constexpr std::int64_t kCopies = 3;
+  constexpr std::int64_t kLayer = 1536;  // an object of JSON
+  const std::int64_t bytes = shown_layers * (cells.area() + seam.area() / 4) + 2 * (cells.area() + seam.area());
+  return 8 * cells.area() + kLayer * layers + kCopies * (bytes * 4 / 3 + kMiB);  // in base64, and what every page has
+}
+
+}  // namespace
 
 Result<void> check_drawable(const ProgramHeader& header, const std::string& path) {
   if (header.plan.path) {
@@ -41,6 +57,10 @@ Result<WrittenReport> write_report(const ReportRequest& request, VerifiedProgram
     report::LayerPicturesOptions options;
     options.memory_bytes = command.memory_bytes();
     options.table_bytes = verified.program.table_bytes();
+    options.later_bytes = [layers = image_layers(header)](const report::Extent& cells, const report::Extent& seam,
+                                                          std::int64_t shown) {
+      return page_bytes(cells, seam, shown, layers);
+    };
     options.threads = command.threads;
     options.cancel = &cancel_token();
     options.progress = &bar;

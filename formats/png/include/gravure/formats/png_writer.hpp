@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -21,5 +22,14 @@ inline constexpr std::int64_t kMostPngSide = 16'384;
 /// The picture as a PNG file; the same pixels give the same bytes. Fails with out_of_range on sizes, bad_argument where
 /// `pixels` has another size.
 Result<std::string> encode_png(const PngPicture& picture);
+
+/// Fills row `y` of a picture.
+using PngRows = std::function<Result<void>(std::int64_t y, std::span<std::byte> row)>;
+/// Takes the next bytes of a file; false where they cannot be kept.
+using PngBytes = std::function<bool(std::span<const std::byte>)>;
+
+/// The same file row by row: of the picture, whose `pixels` stay empty, a few rows are held at a time. Fails as
+/// encode_png() and `rows` do, with io where `bytes` does.
+Result<void> write_png(const PngPicture& picture, const PngRows& rows, const PngBytes& bytes);
 
 }  // namespace gravure
