@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <ctime>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -130,8 +131,29 @@ void pad(benchmark::State& state, const Kernels& kernels, std::int64_t) {
   compare(state, product(kLayerWidth, kLayerRows), src.data(), static_cast<std::int64_t>(src.size()), [&] {
     for (std::int64_t row = 0; row < kLayerRows; ++row) {
       kernels.place_line(std::span(dst).subspan(static_cast<std::size_t>(row * out), static_cast<std::size_t>(out)),
-                         250, std::span(src).subspan(static_cast<std::size_t>(row * in)), kLayerWidth,
+                         250, std::span(src).subspan(static_cast<std::size_t>(row * in)), 0, kLayerWidth,
                          {.mirror = row % 2 == 1});
+    }
+  });
+}
+
+/// Lines of 3500 pixels put together of stretches of `width`, each from another bit of a line of its own: a band or a
+/// pass shows one stretch, a helical line one of every layer, here beside each other in what is read.
+void window(benchmark::State& state, const Kernels& kernels, std::int64_t width, bool invert) {
+  const std::int64_t stretches = kLayerWidth / width;
+  const std::int64_t in = packed_bytes(width + 7);
+  const std::int64_t out = packed_bytes(stretches * width);
+  const Bytes src = picture(kLayerRows * stretches * in, 32);
+  Bytes dst(static_cast<std::size_t>(kLayerRows * out));
+  compare(state, product(stretches * width, kLayerRows), src.data(), static_cast<std::int64_t>(dst.size()), [&] {
+    for (std::int64_t row = 0; row < kLayerRows; ++row) {
+      const std::span<std::byte> line =
+          std::span(dst).subspan(static_cast<std::size_t>(row * out), static_cast<std::size_t>(out));
+      for (std::int64_t i = 0; i < stretches; ++i) {
+        kernels.place_line(line, i * width,
+                           std::span(src).subspan(static_cast<std::size_t>((row * stretches + i) * in)), (row + i) % 8,
+                           width, {.invert = invert});
+      }
     }
   });
 }
@@ -162,8 +184,10 @@ void threshold(benchmark::State& state, const Kernels& kernels, std::int64_t wid
 }
 
 /// One hundred layers of `rows` lines; memcpy copies the bytes of all layers.
+template <class Sample>
 void slice(benchmark::State& state, const Kernels& kernels, std::int64_t rows) {
-  const std::vector<std::uint16_t> src = depth_map<std::uint16_t>(kLayerWidth * rows);
+  const std::vector<Sample> src = depth_map<Sample>(kLayerWidth * rows);
+  const SliceRange range{.levels = 100, .vmin = 0, .vmax = std::numeric_limits<Sample>::max()};
   const std::int64_t plane = rows * packed_bytes(kLayerWidth);
   Bytes dst(static_cast<std::size_t>(100 * plane));
   const Bytes all(dst.size());
@@ -171,8 +195,13 @@ void slice(benchmark::State& state, const Kernels& kernels, std::int64_t rows) {
   for (std::int64_t k = 0; k < 100; ++k) {
     layers.push_back(std::span(dst).subspan(static_cast<std::size_t>(k * plane), static_cast<std::size_t>(plane)));
   }
-  compare(state, product(100 * kLayerWidth, rows), all.data(), 100 * plane,
-          [&] { kernels.slice_u16(layers, 0, src, kLayerWidth, rows, {.levels = 100, .vmin = 0, .vmax = 65535}); });
+  compare(state, product(100 * kLayerWidth, rows), all.data(), 100 * plane, [&] {
+    if constexpr (sizeof(Sample) == 1) {
+      kernels.slice_u8(layers, 0, src, kLayerWidth, rows, range);
+    } else {
+      kernels.slice_u16(layers, 0, src, kLayerWidth, rows, range);
+    }
+  });
 }
 
 void transpose(benchmark::State& state, const Kernels& kernels, std::int64_t rows, std::int64_t cols) {
@@ -208,6 +237,9 @@ void add_all(const Kernels& kernels) {
   add(kernels, "place_rows/3500/mirrored", place, kLayerWidth, kLayerRows, RowOptions{.first_mirrored = true});
   add(kernels, "place_rows/27489/alternating", place, kLayerRows, kLayerWidth, RowOptions{.alternate = true});
   add(kernels, "place_line/3500+500/alternating", pad, 0);
+  add(kernels, "place_line/window/3500", window, kLayerWidth, false);
+  add(kernels, "place_line/window/3500/inverted", window, kLayerWidth, true);
+  add(kernels, "place_line/window/100x35", window, std::int64_t{35}, false);
   add(kernels, "popcount", count, 0);
   add(kernels, "first_difference", count, 1);
   add(kernels, "count_differences", count, 2);
@@ -215,8 +247,10 @@ void add_all(const Kernels& kernels) {
   add(kernels, "threshold_u16/memory", threshold<std::uint16_t>, kLayerWidth, kLayerRows);
   add(kernels, "threshold_f32/memory", threshold<float>, kLayerWidth, kLayerRows);
   add(kernels, "threshold_u8/cache", threshold<std::uint8_t>, kLayerWidth, std::int64_t{64});
-  add(kernels, "slice_u16/100_layers/64_lines", slice, std::int64_t{64});
-  add(kernels, "slice_u16/100_layers/memory", slice, std::int64_t{4096});
+  add(kernels, "slice_u8/100_layers/64_lines", slice<std::uint8_t>, std::int64_t{64});
+  add(kernels, "slice_u8/100_layers/memory", slice<std::uint8_t>, std::int64_t{4096});
+  add(kernels, "slice_u16/100_layers/64_lines", slice<std::uint16_t>, std::int64_t{64});
+  add(kernels, "slice_u16/100_layers/memory", slice<std::uint16_t>, std::int64_t{4096});
   add(kernels, "transpose/27489x3500", transpose, kLayerRows, kLayerWidth);
   add(kernels, "transpose/3500x27489", transpose, kLayerWidth, kLayerRows);
   add(kernels, "transpose/28160x3584", transpose, std::int64_t{28160}, std::int64_t{3584});

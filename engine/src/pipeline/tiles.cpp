@@ -92,7 +92,7 @@ class TiledSource final : public ImageSource {
     for (std::int64_t tile = 0; tile < grid_.across; ++tile) {
       const bool mirrored = turned_over(grid_.mirror_across, tile);
       if (tile_.samples == SampleType::bit) {
-        raster::place_line(out, tile * tile_.width, row, tile_.width, {.mirror = mirrored});
+        raster::place_line(out, tile * tile_.width, row, 0, tile_.width, {.mirror = mirrored});
         continue;
       }
       const std::span<std::byte> place = out.subspan(as_size(tile) * row.size(), row.size());

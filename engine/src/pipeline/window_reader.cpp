@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "gravure/core/as_size.hpp"
-#include "gravure/raster/copy_bits.hpp"
+#include "gravure/raster/place.hpp"
 
 namespace gravure {
 namespace {
@@ -151,9 +151,9 @@ Result<void> WindowReader::cut_lines(std::int64_t layer, std::int64_t first_line
     GRAVURE_TRY(const bool invert, inner_.read_lines(layer, first_row + done, now, rows_));
     for (std::int64_t i = 0; i < now; ++i) {
       const std::int64_t line = backwards ? count - 1 - (done + i) : done + i;
-      raster::copy_bits(out.subspan(as_size(line * header_.line_bytes()), as_size(header_.line_bytes())),
-                        stretch.first_pixel, std::span<const std::byte>(rows_).subspan(as_size(i * row), as_size(row)),
-                        stretch.first_column, stretch.columns, invert);
+      raster::place_line(out.subspan(as_size(line * header_.line_bytes()), as_size(header_.line_bytes())),
+                         stretch.first_pixel, std::span<const std::byte>(rows_).subspan(as_size(i * row), as_size(row)),
+                         stretch.first_column, stretch.columns, {.invert = invert});
     }
   }
   return {};
@@ -190,11 +190,10 @@ Result<void> WindowReader::fill_strip(std::size_t image, std::int64_t first, std
   const std::int64_t row = image_row_bytes(stack_);
   GRAVURE_TRY(const bool invert, inner_.read_lines(static_cast<std::int64_t>(image), held_line_ + first, count, rows_));
   for (std::int64_t i = 0; i < count; ++i) {
-    std::byte* const kept = held_.data() + strip.offset + (first + i) * strip.bytes;
-    std::memcpy(kept, rows_.data() + i * row + strip.first_byte, as_size(strip.bytes));
-    if (invert) {
-      std::for_each(kept, kept + strip.bytes, [](std::byte& byte) { byte = ~byte; });
-    }
+    raster::place_line(
+        std::span(held_).subspan(as_size(strip.offset + (first + i) * strip.bytes), as_size(strip.bytes)), 0,
+        std::span<const std::byte>(rows_).subspan(as_size(i * row), as_size(row)), 8 * strip.first_byte,
+        8 * strip.bytes, {.invert = invert});
   }
   return {};
 }
@@ -232,9 +231,9 @@ void WindowReader::expose(std::int64_t revolution, std::int64_t first_line, std:
         continue;
       }
       const Strip& strip = strips_[as_size(stretch.layer)];
-      raster::copy_bits(line, stretch.first_pixel,
-                        held.subspan(as_size(strip.offset + i * strip.bytes), as_size(strip.bytes)),
-                        stretch.first_column - strip.first_byte * 8, stretch.columns);
+      raster::place_line(line, stretch.first_pixel,
+                         held.subspan(as_size(strip.offset + i * strip.bytes), as_size(strip.bytes)),
+                         stretch.first_column - strip.first_byte * 8, stretch.columns);
     }
   }
 }

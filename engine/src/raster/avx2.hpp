@@ -22,8 +22,8 @@ GRAVURE_AVX2 inline __m256i load(const std::byte* from) {
   return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
 }
 
-void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t width,
-                PlaceOptions options);
+void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t src_bit,
+                std::int64_t width, PlaceOptions options);
 void place_rows(std::span<std::byte> dst, std::span<const std::byte> src, std::int64_t width, std::int64_t rows,
                 RowOptions options);
 std::int64_t popcount(std::span<const std::byte> bits);

@@ -26,8 +26,8 @@ inline bool cpu_has_avx512() {
          __builtin_cpu_supports("avx512vpopcntdq") != 0 && __builtin_cpu_supports("gfni") != 0;
 }
 
-void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t width,
-                PlaceOptions options);
+void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t src_bit,
+                std::int64_t width, PlaceOptions options);
 void place_rows(std::span<std::byte> dst, std::span<const std::byte> src, std::int64_t width, std::int64_t rows,
                 RowOptions options);
 std::int64_t popcount(std::span<const std::byte> bits);

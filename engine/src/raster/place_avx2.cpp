@@ -107,9 +107,9 @@ struct PlaceLeaf {
 
 }  // namespace
 
-void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t width,
-                PlaceOptions options) {
-  detail::place_line_with<PlaceLeaf>(dst, dst_bit, src, width, options);
+void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t src_bit,
+                std::int64_t width, PlaceOptions options) {
+  detail::place_line_with<PlaceLeaf>(dst, dst_bit, src, src_bit, width, options);
 }
 
 void place_rows(std::span<std::byte> dst, std::span<const std::byte> src, std::int64_t width, std::int64_t rows,

@@ -13,8 +13,8 @@ namespace gravure::raster::portable {
 void copy_bits(std::byte* dst, std::int64_t bytes, const std::byte* src, std::int64_t first, unsigned flip);
 void mirror_bits(std::byte* dst, std::int64_t bytes, const std::byte* src, std::int64_t end, unsigned flip);
 
-void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t width,
-                PlaceOptions options);
+void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t src_bit,
+                std::int64_t width, PlaceOptions options);
 void place_rows(std::span<std::byte> dst, std::span<const std::byte> src, std::int64_t width, std::int64_t rows,
                 RowOptions options);
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <span>
 
-#include "gravure/raster/copy_bits.hpp"
 #include "gravure/raster/place.hpp"
 
 namespace gravure::texture {
@@ -82,7 +81,6 @@ Result<PathPulses> picture_pulses(const PictureGrid& grid, LayerLines& lines, co
   const std::int64_t bytes = raster::packed_bytes(grid.columns);
   const std::int64_t band = std::clamp<std::int64_t>((std::int64_t{1} << 20) / bytes, 1, grid.rows);
   std::vector<std::byte> read(static_cast<std::size_t>(band * bytes));
-  std::vector<std::byte> placed(read.size());
   for (std::int64_t first = 0; first < grid.rows; first += band) {
     if (cancel.cancelled()) {
       return Error{ErrorCode::cancelled, "stopped while the picture was read"};
@@ -90,11 +88,10 @@ Result<PathPulses> picture_pulses(const PictureGrid& grid, LayerLines& lines, co
     const std::int64_t now = std::min(band, grid.rows - first);
     const auto size = static_cast<std::size_t>(now * bytes);
     GRAVURE_TRY(const bool dark, lines.read_lines(0, first, now, std::span(read).first(size)));
-    raster::place_rows(std::span(placed).first(size), std::span(read).first(size), grid.columns, now,
-                       {.invert = dark, .first_mirrored = first % 2 != 0, .alternate = true});
     for (std::int64_t row = 0; row < now; ++row) {
-      raster::copy_bits(pulses.bits, (first + row) * grid.columns,
-                        std::span(placed).subspan(static_cast<std::size_t>(row * bytes)), 0, grid.columns);
+      raster::place_line(pulses.bits, (first + row) * grid.columns,
+                         std::span(read).subspan(static_cast<std::size_t>(row * bytes)), 0, grid.columns,
+                         {.mirror = (first + row) % 2 != 0, .invert = dark});
     }
   }
   return pulses;

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "gravure/core/as_size.hpp"
-#include "gravure/raster/copy_bits.hpp"
 #include "gravure/raster/place.hpp"
 
 namespace gravure {
@@ -50,10 +49,10 @@ Result<void> gather(LineSource& program, ChunkRun& runner, const Showing& showin
         const Stretch stretch = cut(map.stretch(revolution, line, showing.stretch), part);
         if (stretch.columns > 0) {
           const std::int64_t at = map.image_line(revolution, line) - part.first_line;
-          raster::copy_bits(out.subspan(as_size(at * part_bytes), as_size(part_bytes)),
-                            stretch.first_column - part.first_column,
-                            landed.subspan(as_size((line - runner.first_line()) * line_bytes), as_size(line_bytes)),
-                            stretch.first_pixel, stretch.columns);
+          raster::place_line(out.subspan(as_size(at * part_bytes), as_size(part_bytes)),
+                             stretch.first_column - part.first_column,
+                             landed.subspan(as_size((line - runner.first_line()) * line_bytes), as_size(line_bytes)),
+                             stretch.first_pixel, stretch.columns);
         }
       }
     }

@@ -51,7 +51,9 @@ TEST_P(Bounds, AreKeptWherePlacing) {
         kernels().place_rows(row.bytes(), src.bytes(), width, 1, {.first_mirrored = mirror});
         for (std::int64_t bit = 0; bit < 8; bit += 3) {
           const FencedBytes dst(packed_bytes(bit + width), at_end);
-          kernels().place_line(dst.bytes(), bit, src.bytes(), width, {.mirror = mirror});
+          kernels().place_line(dst.bytes(), bit, src.bytes(), 0, width, {.mirror = mirror});
+          const FencedBytes to(packed_bytes(7 - bit + width), at_end);
+          kernels().place_line(to.bytes(), 7 - bit, dst.bytes(), bit, width, {.mirror = mirror});
         }
       }
     }

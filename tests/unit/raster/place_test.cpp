@@ -6,9 +6,10 @@ namespace gravure::raster {
 namespace {
 
 /// Bit by bit, from the words of place.hpp.
-void place_bits(Bytes& dst, std::int64_t dst_bit, const Bytes& src, std::int64_t width, PlaceOptions options) {
+void place_bits(Bytes& dst, std::int64_t dst_bit, const Bytes& src, std::int64_t src_bit, std::int64_t width,
+                PlaceOptions options) {
   for (std::int64_t k = 0; k < width; ++k) {
-    set_bit(dst, dst_bit + k, get_bit(src, options.mirror ? width - 1 - k : k) != options.invert);
+    set_bit(dst, dst_bit + k, get_bit(src, src_bit + (options.mirror ? width - 1 - k : k)) != options.invert);
   }
 }
 
@@ -36,14 +37,16 @@ TEST_P(PlaceLine, EqualsBitByBitAndKeepsAllOtherBits) {
   for (int trial = 0; trial < 20000; ++trial) {
     const std::int64_t width = dice.size(3000);
     const std::int64_t dst_bit = dice.up_to(70);
+    const std::int64_t src_bit = dice.coin() ? 0 : dice.up_to(70);
     const PlaceOptions options{.mirror = dice.coin(), .invert = dice.coin()};
-    const Bytes src = dice.bytes(packed_bytes(width));  // no slack: the address sanitizer sees one byte too many
+    const Bytes src =
+        dice.bytes(packed_bytes(src_bit + width));  // no slack: the address sanitizer sees a byte too many
     Bytes dst = dice.bytes(packed_bytes(dst_bit + width) + (dice.coin() ? dice.up_to(40) : 0));
     Bytes expected = dst;
-    place_bits(expected, dst_bit, src, width, options);
-    kernels().place_line(dst, dst_bit, src, width, options);
-    ASSERT_EQ(dst, expected) << "width " << width << ", bit " << dst_bit << ", mirror " << options.mirror << ", invert "
-                             << options.invert;
+    place_bits(expected, dst_bit, src, src_bit, width, options);
+    kernels().place_line(dst, dst_bit, src, src_bit, width, options);
+    ASSERT_EQ(dst, expected) << "width " << width << " from bit " << src_bit << " to bit " << dst_bit << ", mirror "
+                             << options.mirror << ", invert " << options.invert;
   }
 }
 
@@ -53,13 +56,36 @@ TEST_P(PlaceLine, EqualsPortableOnWideLines) {
   for (int trial = 0; trial < 500; ++trial) {
     const std::int64_t width = dice.up_to(200000);
     const std::int64_t dst_bit = dice.up_to(1000);
+    const std::int64_t src_bit = dice.coin() ? 0 : dice.up_to(1000);
     const PlaceOptions options{.mirror = dice.coin(), .invert = dice.coin()};
-    const Bytes src = dice.bytes(packed_bytes(width));
+    const Bytes src = dice.bytes(packed_bytes(src_bit + width));
     Bytes dst = dice.bytes(packed_bytes(dst_bit + width));
     Bytes expected = dst;
-    portable().place_line(expected, dst_bit, src, width, options);
-    kernels().place_line(dst, dst_bit, src, width, options);
-    ASSERT_EQ(dst, expected) << "width " << width << ", bit " << dst_bit;
+    portable().place_line(expected, dst_bit, src, src_bit, width, options);
+    kernels().place_line(dst, dst_bit, src, src_bit, width, options);
+    ASSERT_EQ(dst, expected) << "width " << width << " from bit " << src_bit << " to bit " << dst_bit << ", mirror "
+                             << options.mirror << ", invert " << options.invert;
+  }
+}
+
+/// What a helical line is put together of: neighbours that share bytes, each from a place of its own.
+TEST_P(PlaceLine, LaysStretchesSideBySide) {
+  Dice dice;
+  SCOPED_TRACE(dice.trace());
+  for (int trial = 0; trial < 500; ++trial) {
+    const std::int64_t most = dice.coin() ? 20 : 900;
+    const Bytes src = dice.bytes(packed_bytes(4000));
+    Bytes dst = dice.bytes(packed_bytes(4000));
+    Bytes expected = dst;
+    for (std::int64_t at = dice.up_to(20); at < 4000;) {
+      const std::int64_t width = std::min<std::int64_t>(dice.up_to(most), 4000 - at);
+      const std::int64_t from = dice.up_to(4000 - width);
+      const bool invert = dice.coin();
+      place_bits(expected, at, src, from, width, {.invert = invert});
+      kernels().place_line(dst, at, src, from, width, {.invert = invert});
+      at += width + dice.up_to(3);
+    }
+    ASSERT_EQ(dst, expected) << "stretches of up to " << most;
   }
 }
 
@@ -109,8 +135,10 @@ TEST_P(PlaceRows, GivesTheRowsBackWhenDoneTwice) {
 TEST(PlaceLine, TakesTheBestKernelsOfThisProcessor) {
   const Bytes src{std::byte{0b1100'0000}, std::byte{0b0100'0000}};
   Bytes dst(3, std::byte{0xFF});
-  place_line(dst, 7, src, 10, {.mirror = true, .invert = false});
+  place_line(dst, 7, src, 0, 10, {.mirror = true, .invert = false});
   EXPECT_EQ(dst, (Bytes{std::byte{0xFF}, std::byte{0b0000'0001}, std::byte{0xFF}}));
+  place_line(dst, 7, src, 1, 3, {.invert = true});
+  EXPECT_EQ(dst, (Bytes{std::byte{0xFE}, std::byte{0b1100'0001}, std::byte{0xFF}}));
   Bytes row(2);
   place_rows(row, src, 10, 1, {.invert = true});
   EXPECT_EQ(row, (Bytes{std::byte{0b0011'1111}, std::byte{0b1000'0000}}));

@@ -26,7 +26,8 @@ std::string_view isa_name(Isa isa) noexcept;
 /// All kernels of one instruction set; contracts as in the headers of the plain functions.
 struct Kernels {
   Isa isa;
-  void (*place_line)(std::span<std::byte>, std::int64_t, std::span<const std::byte>, std::int64_t, PlaceOptions);
+  void (*place_line)(std::span<std::byte>, std::int64_t, std::span<const std::byte>, std::int64_t, std::int64_t,
+                     PlaceOptions);
   void (*place_rows)(std::span<std::byte>, std::span<const std::byte>, std::int64_t, std::int64_t, RowOptions);
   std::int64_t (*popcount)(std::span<const std::byte>);
   std::int64_t (*first_difference)(std::span<const std::byte>, std::span<const std::byte>);

@@ -14,17 +14,18 @@ constexpr std::int64_t packed_bytes(std::int64_t bits) {
 }
 
 struct PlaceOptions {
-  bool mirror = false;  ///< bit 0 of the source becomes the last bit placed
+  bool mirror = false;  ///< the first bit taken becomes the last one placed
   bool invert = false;  ///< ones become zeros and zeros ones
 };
 
-/// Copies bits [0, width) of `src` to bits [dst_bit, dst_bit + width) of `dst`, mirrored and inverted as asked.
+/// Copies bits [src_bit, src_bit + width) of `src` to bits [dst_bit, dst_bit + width) of `dst`, mirrored and inverted
+/// as asked.
 ///
 /// Every other bit of `dst` is kept, those that share the first and the last byte included. Reads no byte of `src` and
-/// writes no byte of `dst` that holds none of these bits: neither span needs guard bytes or an alignment. Bits of `src`
-/// beyond `width` may hold anything. `dst` and `src` must not overlap.
-void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t width,
-                PlaceOptions options = {});
+/// writes no byte of `dst` that holds none of these bits: neither span needs guard bytes or an alignment. Other bits
+/// of `src` may hold anything. `dst` and `src` must not overlap.
+void place_line(std::span<std::byte> dst, std::int64_t dst_bit, std::span<const std::byte> src, std::int64_t src_bit,
+                std::int64_t width, PlaceOptions options = {});
 
 struct RowOptions {
   bool invert = false;          ///< ones become zeros and zeros ones
