@@ -36,7 +36,9 @@ extern "C" void on_signal(int) {
 void watch_signals() {
   struct sigaction action = {};
   action.sa_handler = on_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends at once; nothing half-written shows
+  // A second Ctrl-C ends at once; nothing half-written shows. Reads of libraries go on: they would take an interrupted
+  // one for the end of the file.
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGHUP, &action, nullptr);
@@ -145,7 +147,7 @@ void refuse_ambiguous(const CLI::App& app, const std::vector<std::string>& argum
     throw CLI::ValidationError(empty == arguments.begin() ? "the verb" : "the argument after " + *(empty - 1),
                                "is empty");
   }
-  if (!arguments.empty() && arguments.front()[0] == '-') {
+  if (!arguments.empty() && arguments.front()[0] == '-' && arguments.front() != "--version") {
     const auto verb = std::find_if(arguments.begin(), arguments.end(), [](const std::string& argument) {
       return std::any_of(kVerbs.begin(), kVerbs.end(), [&](const Verb& known) { return known.name == argument; });
     });

@@ -24,20 +24,26 @@ bool TextOutput::flush(bool all) {
   return good_;
 }
 
-Result<void> TextOutput::commit() {
+Result<void> TextOutput::finish() {
+  if (file_ == nullptr) {
+    return {};
+  }
   flush(true);
   good_ = std::fclose(file_.release()) == 0 && good_;
   if (!good_) {
     return Error{ErrorCode::io, output_.path() + ": cannot write: is the disk full?"};
   }
+  return output_.sync();
+}
+
+Result<void> TextOutput::commit() {
+  GRAVURE_CHECK(finish());
   return output_.commit();
 }
 
 Result<void> commit_together(std::vector<TextOutput> files) {
   for (TextOutput& file : files) {
-    if (!file.flush(true) || std::fflush(file.file_.get()) != 0) {
-      return Error{ErrorCode::io, file.output_.path() + ": cannot be written: is the disk full?"};
-    }
+    GRAVURE_CHECK(file.finish());
   }
   GRAVURE_CHECK(check_not_stopped());
   for (TextOutput& file : files) {

@@ -17,10 +17,11 @@ class TextOutput {
   std::string& text() { return text_; }
   /// Writes away what has gathered, when it is worth it; false once a write has failed.
   bool flush(bool all);
+  /// All of it on the disk, but not in its place yet: what is left of commit() then seldom fails.
+  Result<void> finish();
   Result<void> commit();
 
  private:
-  friend Result<void> commit_together(std::vector<TextOutput> files);
   struct Close {
     void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
   };

@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -95,12 +97,13 @@ FileOutput::FileOutput(std::string path, std::string temporary)
     : path_(std::move(path)), temporary_(std::move(temporary)) {}
 
 FileOutput::FileOutput(FileOutput&& other) noexcept
-    : path_(std::exchange(other.path_, {})), temporary_(std::exchange(other.temporary_, {})) {}
+    : path_(std::exchange(other.path_, {})), temporary_(std::exchange(other.temporary_, {})), synced_(other.synced_) {}
 
 FileOutput& FileOutput::operator=(FileOutput&& other) noexcept {
   discard();
   path_ = std::exchange(other.path_, {});
   temporary_ = std::exchange(other.temporary_, {});
+  synced_ = other.synced_;
   return *this;
 }
 
@@ -150,8 +153,16 @@ Result<FileOutput> FileOutput::create(const std::string& path) {
   return system_error("cannot find a free temporary name beside the output", path);
 }
 
+Result<void> FileOutput::sync() {
+  if (!synced_) {
+    GRAVURE_CHECK(sync_path(temporary_, O_RDONLY));
+    synced_ = true;
+  }
+  return {};
+}
+
 Result<void> FileOutput::commit() {
-  GRAVURE_CHECK(sync_path(temporary_, O_RDONLY));
+  GRAVURE_CHECK(sync());
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
     return system_error("cannot put the finished file in its place", path_);
   }
@@ -167,6 +178,7 @@ Result<FileOutput> stage_file(const std::string& path, std::string_view content)
     return system_error("cannot open the output", path);
   }
   GRAVURE_CHECK(write_all(file.get(), content, path));
+  GRAVURE_CHECK(output.sync());
   return output;
 }
 
@@ -182,9 +194,34 @@ Error open_error(const std::string& path, int reason) {
           path + ": cannot open: " + std::strerror(reason) + remedy(reason)};
 }
 
-bool is_device_failure(int reason) {
-  return reason == EIO || reason == ENODEV || reason == ENXIO || reason == ESTALE || reason == ETIMEDOUT ||
-         reason == EREMOTEIO || reason == EUCLEAN;
+std::int64_t read_file_at(int file, std::int64_t offset, std::span<std::byte> out) noexcept {
+  std::size_t done = 0;
+  while (done < out.size()) {
+    const ssize_t got =
+        ::pread(file, out.data() + done, out.size() - done, static_cast<off_t>(offset + static_cast<off_t>(done)));
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
+    if (got < 0) {
+      return -1;
+    }
+    if (got == 0) {
+      break;
+    }
+    done += static_cast<std::size_t>(got);
+  }
+  return static_cast<std::int64_t>(done);
+}
+
+Error read_error(const std::string& where, int reason) {
+  return {ErrorCode::io, where + ": cannot be read: " + std::strerror(reason) + ": check the disk or the network"};
+}
+
+bool is_device_failure(int reason) noexcept {
+  constexpr std::array<int, 15> kFailures = {EIO,       ENODEV,    ENXIO,        ESTALE,     ETIMEDOUT,
+                                             EREMOTEIO, EUCLEAN,   EBADMSG,      ENOTCONN,   EHOSTDOWN,
+                                             ENETDOWN,  ENETRESET, ECONNABORTED, ECONNRESET, EHOSTUNREACH};
+  return std::find(kFailures.begin(), kFailures.end(), reason) != kFailures.end();
 }
 
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {

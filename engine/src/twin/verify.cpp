@@ -196,7 +196,7 @@ class Verifier::Worker final : public PinObserver {
         continue;
       }
       GRAVURE_CHECK(chunk_.load(*program_, {layer, chunk}));
-      load_image(layer, chunk);
+      GRAVURE_CHECK(load_image(layer, chunk));
       for (const std::int64_t revolution : parent_.revolutions_of_[as_size(layer)]) {
         if (parent_.options_.cancel != nullptr && parent_.options_.cancel->cancelled()) {
           return Error{ErrorCode::cancelled, "stopped before everything was verified"};
@@ -211,21 +211,25 @@ class Verifier::Worker final : public PinObserver {
   const Tally& tally() const { return tally_; }
 
  private:
-  /// An image that cannot be read is reported; everything else is verified all the same.
-  void load_image(std::int64_t layer, std::int64_t chunk) {
+  /// An image that cannot be read is reported, and everything else verified all the same; a disk that fails ends it.
+  Result<void> load_image(std::int64_t layer, std::int64_t chunk) {
     comparable_ = false;
     if (!images_) {
-      return;
+      return {};
     }
     image_.resize(as_size(chunk_.lines() * header_.line_bytes()));
     const Result<bool> invert = images_->read_lines(layer, chunk_.first_line(), chunk_.lines(), image_);
+    if (!invert && invert.error().code == ErrorCode::io) {
+      return invert.error();
+    }
     if (!invert) {
       const auto revolutions = static_cast<std::int64_t>(parent_.revolutions_of_[as_size(layer)].size());
       tally_.unread[layer].add(chunk, revolutions * chunk_.lines(), invert.error().message);
-      return;
+      return {};
     }
     invert_ = invert.value();
     comparable_ = true;
+    return {};
   }
 
   void run_chunk(std::int64_t revolution) {

@@ -33,21 +33,11 @@ class DiskFile : public ByteFile {
   }
 
   Result<std::size_t> read(std::uint64_t offset, std::span<std::byte> out) const override {
-    std::size_t done = 0;
-    while (done < out.size()) {
-      const ssize_t got = ::pread(fd_, out.data() + done, out.size() - done, static_cast<off_t>(offset + done));
-      if (got < 0 && errno == EINTR) {
-        continue;
-      }
-      if (got < 0) {
-        return failure("cannot read");
-      }
-      if (got == 0) {
-        break;
-      }
-      done += static_cast<std::size_t>(got);
+    const std::int64_t got = read_file_at(fd_, static_cast<std::int64_t>(offset), out);
+    if (got < 0) {
+      return failure("cannot read");
     }
-    return done;
+    return static_cast<std::size_t>(got);
   }
 
   Result<void> write(std::uint64_t offset, std::span<const std::byte> bytes) override {

@@ -66,6 +66,9 @@ Result<ImageKind> image_kind(const std::string& path) {
   }
   char bytes[8] = {};
   file.read(bytes, sizeof bytes);
+  if (const int reason = errno; file.bad()) {
+    return read_error(path, reason);
+  }
   const std::string_view head(bytes, static_cast<std::size_t>(file.gcount()));
   for (const Signature& signature : kSignatures) {
     if (head.substr(0, signature.bytes.size()) == signature.bytes) {

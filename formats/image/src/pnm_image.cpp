@@ -1,11 +1,13 @@
 #include "pnm_image.hpp"
 
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "gravure/core/file_output.hpp"
 #include "gravure/formats/tiff.hpp"
 
 namespace gravure {
@@ -104,6 +106,9 @@ class PnmSource final : public ImageSource {
     file_.clear();
     file_.seekg(data_offset_ + first_row * row_bytes_);
     file_.read(reinterpret_cast<char*>(out.data()), bytes);
+    if (const int reason = errno; file_.bad()) {
+      return read_error(info_.path + ": row " + std::to_string(first_row + file_.gcount() / row_bytes_), reason);
+    }
     if (file_.gcount() != bytes) {
       return bad_file(info_.path, "row " + std::to_string(first_row + file_.gcount() / row_bytes_) +
                                       ": the file ends; copy it again");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -49,6 +50,7 @@ std::int64_t OiioSource::buffer_bytes(const ImageInfo& info, const HeaderFacts& 
 
 Result<void> OiioSource::read_rows(std::int64_t first_row, std::int64_t row_count, std::span<std::byte> out) {
   GRAVURE_CHECK(check_rows(info_, first_row, row_count, out.size()));
+  errno = 0;
   try {
     return read_unguarded(first_row, row_count, out.data());
   } catch (const std::bad_alloc&) {

@@ -1,5 +1,8 @@
 #include <zlib.h>
 
+#include <cerrno>
+
+#include "gravure/core/file_output.hpp"
 #include "header_facts.hpp"
 
 namespace gravure::oiio {
@@ -9,7 +12,11 @@ constexpr std::int64_t kBeforeData = 8;  // length and type of a chunk; its chec
 constexpr std::int64_t kPiece = std::int64_t{1} << 20;
 constexpr std::int64_t kMaxDeflateRatio = 1032;  // 258 bytes from 2 bits
 
+/// io where the last read failed.
 Error damaged(const std::string& path, std::int64_t offset, const std::string& what) {
+  if (const int reason = errno; is_device_failure(reason)) {
+    return read_error(path, reason);
+  }
   return bad_file(path, what + " at byte " + std::to_string(offset) +
                             ": the file is damaged or truncated; copy or export it again");
 }
@@ -22,6 +29,7 @@ struct Chunk {
 };
 
 Result<Chunk> check_chunk(HeaderFile& file, std::int64_t offset) {
+  errno = 0;
   const std::string head = file.bytes(offset, kBeforeData);
   const std::int64_t length = big_endian(head, 0, 4);
   if (head.size() < kBeforeData || length > file.size() - offset - kBeforeData - 4) {

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <csetjmp>
 #include <cstdio>
 #include <new>
 #include <utility>
 
+#include "gravure/core/file_output.hpp"
 #include "header_facts.hpp"
 #include "row_request.hpp"
 
@@ -92,7 +94,11 @@ Result<std::unique_ptr<PngDecoder>> start_decoder(const std::string& path) {
   if (!decoder->is_open()) {
     return Error{ErrorCode::io, path + ": cannot be opened any more: was it moved, or are too many files open?"};
   }
+  errno = 0;
   if (!decoder->start()) {
+    if (const int reason = errno; is_device_failure(reason)) {
+      return read_error(path, reason);
+    }
     return bad_file(path, "cannot be opened: the file is damaged: " + decoder->reason() + "; copy or export it again");
   }
   return decoder;
@@ -116,6 +122,7 @@ Result<void> PngSource::begin() {
 
 Result<void> PngSource::read_rows(std::int64_t first_row, std::int64_t row_count, std::span<std::byte> out) {
   GRAVURE_CHECK(check_rows(info_, first_row, row_count, out.size()));
+  errno = 0;
   const auto bytes = static_cast<std::size_t>(row_bytes(info_.samples, info_.width));
   skipped_.resize(bytes);
   try {

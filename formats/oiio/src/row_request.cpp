@@ -1,6 +1,9 @@
 #include "row_request.hpp"
 
 #include <algorithm>
+#include <cerrno>
+
+#include "gravure/core/file_output.hpp"
 
 namespace gravure::oiio {
 
@@ -24,6 +27,9 @@ Result<void> check_rows(const ImageInfo& info, std::int64_t first_row, std::int6
 }
 
 Error damaged_rows(const ImageInfo& info, std::int64_t first_row, std::int64_t row_count, std::string reason) {
+  if (const int failure = errno; is_device_failure(failure)) {
+    return read_error(place_of(info) + "row " + std::to_string(first_row), failure);
+  }
   std::replace(reason.begin(), reason.end(), '\n', ' ');
   const std::string rows =
       std::to_string(first_row) + (row_count > 1 ? " to " + std::to_string(first_row + row_count - 1) : "");

@@ -1,8 +1,11 @@
 #include "tiff_page_info.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <limits>
+
+#include "gravure/core/file_output.hpp"
 
 namespace gravure {
 namespace {
@@ -218,8 +221,12 @@ Result<TiffHandle> open_tiff_page(const std::string& path, std::int64_t page, co
                  tiff_place(path, page) + "the file has pages 0 to " + std::to_string(count - 1)};
   }
   // h: the first directory is read only if it is the wanted one; c: strips stay as the file has them
+  errno = 0;
   TiffHandle handle(path, "rmhc");
   if (!handle || TIFFSetSubDirectory(handle.get(), pages.offsets[static_cast<std::size_t>(page)]) != 1) {
+    if (const int reason = errno; is_device_failure(reason)) {
+      return read_error(path + ": page " + std::to_string(page) + ": its directory", reason);
+    }
     return refused(tiff_place(path, page),
                    "its directory cannot be read: the file is damaged" + handle.messages().text());
   }

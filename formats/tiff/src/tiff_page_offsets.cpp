@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <unordered_set>
 
 #include "gravure/core/file_output.hpp"
@@ -18,8 +19,11 @@ namespace {
 
 constexpr std::size_t kRememberedFiles = 16;
 
+/// False, with errno 0, where the file ends before.
 bool read_all_at(int fd, std::uint64_t offset, unsigned char* out, std::size_t bytes) {
-  return ::pread(fd, out, bytes, static_cast<off_t>(offset)) == static_cast<ssize_t>(bytes);
+  errno = 0;
+  return read_file_at(fd, static_cast<std::int64_t>(offset), std::as_writable_bytes(std::span(out, bytes))) ==
+         static_cast<std::int64_t>(bytes);
 }
 
 class ReadOnlyFile {
@@ -83,7 +87,11 @@ std::optional<std::uint64_t> small_value(const Layout& layout, const unsigned ch
                           : std::nullopt;
 }
 
+/// io where the last read failed.
 Error damaged(const std::string& path, std::size_t page, const std::string& what) {
+  if (const int reason = errno; is_device_failure(reason)) {
+    return read_error(path + ": page " + std::to_string(page) + ": its directory", reason);
+  }
   return {ErrorCode::bad_file,
           path + ": page " + std::to_string(page) + ": " + what + ": the file is truncated or damaged; copy it again"};
 }
@@ -93,6 +101,7 @@ Result<std::uint64_t> next_offset(const ReadOnlyFile& file, const Layout& layout
                                   std::uint64_t offset, const std::string& path, std::size_t page) {
   std::array<unsigned char, 8> bytes{};
   const std::string where = "its directory (at byte " + std::to_string(offset) + " of " + std::to_string(file_bytes);
+  errno = 0;
   if (offset >= file_bytes || !file.read_at(offset, bytes.data(), layout.count_bytes())) {
     return damaged(path, page, where + ") lies outside the file");
   }
@@ -112,6 +121,9 @@ Result<std::uint64_t> next_offset(const ReadOnlyFile& file, const Layout& layout
 Result<TiffPageList> walk(const ReadOnlyFile& file, const std::string& path, std::uint64_t file_bytes) {
   std::array<unsigned char, 16> header{};
   const std::size_t have = file.read_at(0, header.data(), 16) ? 16 : (file.read_at(0, header.data(), 8) ? 8 : 0);
+  if (const int reason = errno; have == 0 && is_device_failure(reason)) {
+    return read_error(path, reason);
+  }
   const auto layout = have == 0 ? std::nullopt : parse_layout(header.data());
   if (!layout || (layout->big && have < 16)) {
     return Error{ErrorCode::bad_file,

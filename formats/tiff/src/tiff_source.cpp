@@ -1,9 +1,6 @@
 #include "tiff_source.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "gravure/core/file_output.hpp"
@@ -28,7 +25,7 @@ bool StoredBlocks::fetch(int file, std::int64_t offset, std::int64_t bytes) {
   if (!held_) {
     held_ = std::make_unique_for_overwrite<std::byte[]>(static_cast<std::size_t>(kBytes));
   }
-  const ssize_t got = ::pread(file, held_.get(), static_cast<std::size_t>(bytes), offset);
+  const std::int64_t got = read_file_at(file, offset, {held_.get(), static_cast<std::size_t>(bytes)});
   held_from_byte_ = next_byte_ = offset;
   end_byte_ = offset + std::max<std::int64_t>(0, got);
   return got > 0;
@@ -55,7 +52,7 @@ Error BilevelSource::damage(std::int64_t row) const {
   const int reason = errno;  // of libtiff's last call of the system, if it made one
   const std::string where = place() + "row " + std::to_string(row);
   if (is_device_failure(reason)) {
-    return {ErrorCode::io, where + ": cannot be read: " + std::strerror(reason) + ": check the disk or the network"};
+    return read_error(where, reason);
   }
   return {ErrorCode::bad_file, where + ": the image data are damaged or truncated; copy or export the file again" +
                                    handle_.messages().text()};
@@ -75,14 +72,8 @@ bool BilevelSource::decode_block(std::uint32_t number, std::byte* out, std::int6
 
 std::int64_t BilevelSource::read_bytes(std::int64_t offset, std::int64_t bytes, std::byte* out,
                                        bool lowest_bit_first) const {
-  std::int64_t done = 0;
-  while (done < bytes) {
-    const ssize_t got = ::pread(TIFFFileno(tiff()), out + done, static_cast<std::size_t>(bytes - done), offset + done);
-    if (got <= 0) {
-      break;
-    }
-    done += got;
-  }
+  const std::int64_t done =
+      std::max<std::int64_t>(0, read_file_at(TIFFFileno(tiff()), offset, {out, static_cast<std::size_t>(bytes)}));
   if (lowest_bit_first) {
     TIFFReverseBits(reinterpret_cast<std::uint8_t*>(out), done);
   }

@@ -83,7 +83,7 @@ class BilevelTiffWriter::State {
   Result<void> begin(const BilevelTiffPage& page);
   Result<void> append(std::span<const std::byte> rows);
   Result<void> end();
-  Result<void> commit();
+  Result<FileOutput> finish();
 
  private:
   Result<void> write_strip();
@@ -171,14 +171,15 @@ Result<void> BilevelTiffWriter::State::end() {
   return TIFFWriteDirectory(handle_.get()) == 1 ? Result<void>() : failure("cannot write the directory");
 }
 
-Result<void> BilevelTiffWriter::State::commit() {
+Result<FileOutput> BilevelTiffWriter::State::finish() {
   GRAVURE_CHECK(end());
   handle_.messages().clear();
   handle_.close();
   if (handle_.messages().error[0] != '\0') {
     return failure("cannot finish the file");
   }
-  return output_.commit();
+  GRAVURE_CHECK(output_.sync());
+  return std::move(output_);
 }
 
 Result<BilevelTiffWriter> BilevelTiffWriter::create(const std::string& path, const BilevelTiffPage& first_page,
@@ -207,8 +208,13 @@ Result<void> BilevelTiffWriter::begin_page(const BilevelTiffPage& page) {
   return state_->begin(page);
 }
 
+Result<FileOutput> BilevelTiffWriter::finish() {
+  return state_->finish();
+}
+
 Result<void> BilevelTiffWriter::commit() {
-  return state_->commit();
+  GRAVURE_TRY(FileOutput output, finish());
+  return output.commit();
 }
 
 }  // namespace gravure

@@ -60,9 +60,9 @@ void break_disk(const std::string& path) {
 TEST(BilevelTiff, TellsAFailingDiskFromADamagedFile) {
   const TempFolder folder;
   const std::string path = std::filesystem::canonical(folder.path()).string() + "/a.tif";
-  for (const std::uint16_t codec : {kNone, kPackBits, kLzw, kG4}) {
+  for (const std::uint16_t codec : {kNone, kPackBits, kLzw, kDeflate, kG4}) {
     for (const std::uint32_t tile_width : {0U, 64U}) {
-      TiffSpec spec{.compression = codec, .tile_width = tile_width};
+      const TiffSpec spec{.compression = codec, .tile_width = tile_width};
       write_tiff(path, {pattern(200, 64)}, spec);
       const auto source = BilevelTiffOpener().open(path, 0);
       ASSERT_TRUE(source) << source.error().message;

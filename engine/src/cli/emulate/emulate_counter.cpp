@@ -158,7 +158,8 @@ Result<int> run_counter(const EmulateOptions& options, const Command& command) {
   std::vector<TextOutput> files;
   const auto keep = [&](Result<WrittenEdges> made) -> Result<void> {
     GRAVURE_TRY(WrittenEdges written, std::move(made));
-    if (written.edges != closed_form) {  // two ways to the same number
+    GRAVURE_CHECK(written.output.finish());  // a full disk ends the edges early
+    if (written.edges != closed_form) {      // two ways to the same number
       return Error{ErrorCode::device,
                    fmt::format("the event model gave {} edges, the closed form {}", written.edges, closed_form)};
     }

@@ -60,7 +60,7 @@ std::string layer_path(const SliceArguments& options, std::int64_t level) {
 /// fires the layer is white, or black where black fires.
 Result<void> slice_levels(const SliceArguments& options, const LayerStack& stack, const ImageInfo& info,
                           const ImageOpener& files, std::int64_t first, std::int64_t count,
-                          std::vector<std::int64_t>& fired) {
+                          std::vector<std::int64_t>& fired, std::vector<FileOutput>& finished) {
   std::vector<BilevelTiffWriter> writers;
   BilevelTiffPage page;
   page.width = stack.pixels;
@@ -81,7 +81,7 @@ Result<void> slice_levels(const SliceArguments& options, const LayerStack& stack
     const auto size = static_cast<std::size_t>(now * bytes);
     for (std::int64_t level = first; level < first + count; ++level) {
       if (cancel_token().cancelled()) {
-        return Error{ErrorCode::cancelled, "stopped; layers not complete were not written"};
+        return Error{ErrorCode::cancelled, "stopped; nothing was written"};
       }
       GRAVURE_TRY(const bool dark, reader.read_lines(level, line, now, std::span(read).first(size)));
       static_cast<void>(dark);  // slices always have ones where a pulse fires
@@ -92,7 +92,26 @@ Result<void> slice_levels(const SliceArguments& options, const LayerStack& stack
     }
   }
   for (BilevelTiffWriter& writer : writers) {
-    GRAVURE_CHECK(writer.commit());
+    GRAVURE_TRY(FileOutput layer, writer.finish());
+    finished.push_back(std::move(layer));
+  }
+  return {};
+}
+
+/// All layers into the folder: a part of them would be cut as a whole stack.
+Result<void> slice_all(const SliceArguments& options, const LayerStack& stack, const ImageInfo& info,
+                       const ImageOpener& files, std::vector<std::int64_t>& fired) {
+  constexpr std::int64_t kOpenAtOnce = 64;  // files; the map is read once for each such group
+  std::vector<FileOutput> finished;
+  ProgressBar bar("slice", "layers");
+  for (std::int64_t first = 0; first < options.levels; first += kOpenAtOnce) {
+    const std::int64_t count = std::min(kOpenAtOnce, options.levels - first);
+    GRAVURE_CHECK(slice_levels(options, stack, info, files, first, count, fired, finished));
+    bar.update(first + count, options.levels);
+  }
+  GRAVURE_CHECK(check_not_stopped());
+  for (FileOutput& layer : finished) {
+    GRAVURE_CHECK(layer.commit());
   }
   return {};
 }
@@ -127,17 +146,11 @@ Result<int> run_slice(const SliceArguments& options, const Command& command) {
     GRAVURE_CHECK(refuse_overwrite(layer_path(options, level), {options.map}, Writes::picture));
   }
   std::vector<std::int64_t> fired(static_cast<std::size_t>(options.levels));
-  constexpr std::int64_t kOpenAtOnce = 64;  // files; the map is read once for each such group
-  ProgressBar bar("slice", "layers");
-  for (std::int64_t first = 0; first < options.levels; first += kOpenAtOnce) {
-    const std::int64_t count = std::min(kOpenAtOnce, options.levels - first);
-    if (Result<void> sliced = slice_levels(options, stack, info, files, first, count, fired); !sliced) {
-      if (made) {
-        fs::remove(options.folder, failed);  // where nothing is in it
-      }
-      return sliced.error();
+  if (Result<void> sliced = slice_all(options, stack, info, files, fired); !sliced) {
+    if (made) {
+      fs::remove(options.folder, failed);  // where nothing is in it
     }
-    bar.update(first + count, options.levels);
+    return sliced.error();
   }
   if (command.json) {
     Json layers = Json::array();

@@ -113,6 +113,7 @@ Result<void> choose_program(ExposureArguments& options) {
 }
 
 Result<int> run_exposure(ExposureArguments options, const Command& command) {
+  GRAVURE_CHECK(check_tiff_name("exposure", options.output));
   GRAVURE_CHECK(choose_program(options));
   GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(options.program));
   const ProgramHeader& header = program->header();

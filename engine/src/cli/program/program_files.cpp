@@ -187,6 +187,18 @@ std::vector<std::string> inputs_of_program(const std::string& path, const Progra
   return inputs;
 }
 
+Result<void> check_tiff_name(const std::string& verb, const std::string& output) {
+  std::string suffix = std::filesystem::path(output).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (suffix.empty() || suffix == ".tif" || suffix == ".tiff") {
+    return {};
+  }
+  return Error{ErrorCode::bad_argument, "--output " + output + ": " + verb + " writes TIFF alone: call it " +
+                                            std::filesystem::path(output).replace_extension(".tif").string() +
+                                            " and convert it with another program"};
+}
+
 Result<FoundImages> find_images(const ProgramHeader& header, const std::string& program_path,
                                 const std::string& images_folder, const ImageOpener& opener) {
   FoundImages found;

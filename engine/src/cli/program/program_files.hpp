@@ -70,6 +70,10 @@ struct OutputFile {
 /// link.
 Result<void> refuse_overwrite(const std::vector<OutputFile>& outputs, const std::vector<std::string>& inputs);
 
+/// bad_argument where an output of `verb` has the name of another format: what is written is TIFF, whatever it is
+/// called.
+Result<void> check_tiff_name(const std::string& verb, const std::string& output);
+
 /// What a job names beside its pictures, as it names it: field grid and machine file.
 std::vector<std::string> named_files(const Job& job);
 /// A job file and what it names beside its pictures, each where it lies.

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -108,19 +107,6 @@ Result<BilevelTiffPage> path_page_of(const ProgramHeader& header, const UnrollAr
                  source == header.sources.end() ? nullptr : &*source);
 }
 
-/// What is written is TIFF, whatever it is called.
-Result<void> check_name(const std::string& output) {
-  std::string suffix = std::filesystem::path(output).extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (suffix.empty() || suffix == ".tif" || suffix == ".tiff") {
-    return {};
-  }
-  return Error{ErrorCode::bad_argument, "--output " + output + ": unroll writes TIFF alone: call it " +
-                                            std::filesystem::path(output).replace_extension(".tif").string() +
-                                            " and convert it with another program"};
-}
-
 /// A program that follows a path is one layer, gone along once.
 Result<void> check_selected(const UnrollArguments& options) {
   const auto is_first = [](const std::string& option, const std::optional<std::int64_t>& number) -> Result<void> {
@@ -135,7 +121,7 @@ Result<void> check_selected(const UnrollArguments& options) {
 }
 
 Result<int> run_unroll(const UnrollArguments& options, const Command& command) {
-  GRAVURE_CHECK(check_name(options.output));
+  GRAVURE_CHECK(check_tiff_name("unroll", options.output));
   GRAVURE_TRY(const GrvProgram opened, GrvProgram::open(options.program, command.memory_bytes()));
   const std::unique_ptr<LineSource> program = opened.reader();
   const ProgramHeader& header = opened.header();

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "gravure/core/file_output.hpp"
 #include "shell/man_page.hpp"
+#include "text_output.hpp"
 #include "verb.hpp"
 
 namespace gravure::cli {
@@ -13,20 +13,25 @@ namespace {
 namespace fs = std::filesystem;
 
 Result<int> write_pages(const TreeVerb& root, const std::string& folder, const Command& command) {
-  std::vector<std::pair<std::string, std::string>> pages;
+  std::vector<TextFile> pages;
   for (const TreeVerb* verb : all_verbs(root)) {
-    pages.emplace_back((fs::path(folder) / (verb->full_name("-") + ".1")).string(), man_page(*verb, GRAVURE_VERSION));
+    pages.push_back({(fs::path(folder) / (verb->full_name("-") + ".1")).string(), man_page(*verb, GRAVURE_VERSION)});
   }
-  cancel_token();  // from here on all pages are written, whatever comes
+  cancel_token();  // before there is a folder
   std::error_code failed;
-  fs::create_directories(folder, failed);
+  const bool made = fs::create_directories(folder, failed);
   if (failed) {
     return Error{ErrorCode::io, folder + ": cannot make the folder: " + failed.message()};
   }
+  if (const Result<void> all = write_texts(pages); !all) {
+    if (made) {
+      fs::remove(folder, failed);  // nothing is in it
+    }
+    return all.error();
+  }
   Json written = Json::array();
-  for (const auto& [path, page] : pages) {
-    GRAVURE_CHECK(write_file(path, page));
-    written.push_back(path);
+  for (const TextFile& page : pages) {
+    written.push_back(page.path);
   }
   if (command.json) {
     print_json({{"written", written}});

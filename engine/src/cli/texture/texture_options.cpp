@@ -157,13 +157,9 @@ void add_points_option(CLI::App& verb, std::string& file) {
   verb.add_option("--points", file, "CSV of every point, its stages' point, axes and deviations");
 }
 
-Result<std::optional<TextOutput>> staged(TextOutput output, const std::string& file) {
-  if (cancel_token().cancelled()) {
-    return Error{ErrorCode::cancelled, "stopped; nothing was written"};
-  }
-  if (!output.flush(true)) {
-    return Error{ErrorCode::io, file + ": cannot be written: is the disk full?"};
-  }
+Result<std::optional<TextOutput>> staged(TextOutput output) {
+  GRAVURE_CHECK(check_not_stopped());
+  GRAVURE_CHECK(output.finish());
   return std::optional(std::move(output));
 }
 
@@ -196,7 +192,7 @@ Result<std::optional<TextOutput>> stage_points(const std::string& file, const te
       break;
     }
   }
-  return staged(std::move(output), file);
+  return staged(std::move(output));
 }
 
 Json split_json(const std::string& surface, const texture::TexturePath& path, const texture::Split& split,

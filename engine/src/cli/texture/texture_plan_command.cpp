@@ -51,7 +51,7 @@ Result<std::optional<TextOutput>> stage_trajectory(const TexturePlanArguments& o
       break;
     }
   }
-  return staged(std::move(output), options.trajectory);
+  return staged(std::move(output));
 }
 
 Result<int> plan(TexturePlanArguments options, const Command& command) {

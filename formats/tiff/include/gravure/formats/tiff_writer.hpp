@@ -8,6 +8,7 @@
 #include <string>
 
 #include "gravure/core/error.hpp"
+#include "gravure/core/file_output.hpp"
 
 namespace gravure {
 
@@ -44,7 +45,9 @@ class BilevelTiffWriter {
   Result<void> append_rows(std::span<const std::byte> rows);
   /// Ends the page, which must be complete, and begins the next one.
   Result<void> begin_page(const BilevelTiffPage& page);
-  /// Ends the last page, which must be complete, and puts the file in its place.
+  /// Ends the last page, which must be complete, and the file: on the disk, but not in its place yet.
+  Result<FileOutput> finish();
+  /// The same, and puts it in its place.
   Result<void> commit();
 
  private:
