@@ -108,9 +108,9 @@ Result<OpenProgram> create_program(const std::shared_ptr<Hdf5Channel>& channel, 
 /// The chunks of a program on their way into a file.
 class GrvSink final : public LineSink {
  public:
-  GrvSink(FileOutput output, std::shared_ptr<Hdf5Channel> channel, OpenProgram program, const Layout& layout,
+  GrvSink(std::string path, std::shared_ptr<Hdf5Channel> channel, OpenProgram program, const Layout& layout,
           const GrvOptions& options)
-      : output_(std::move(output)),
+      : path_(std::move(path)),
         channel_(std::move(channel)),
         program_(std::move(program)),
         layout_(layout),
@@ -127,6 +127,9 @@ class GrvSink final : public LineSink {
     give_up();
   }
 
+  /// finish() puts the file in its place; else that is the caller's.
+  void commits(FileOutput output) { output_ = std::move(output); }
+
   std::int64_t lines_per_chunk() const noexcept override { return layout_.lines_per_chunk; }
   Result<StoredChunk> encode(ChunkAddress address, std::span<const std::byte> lines) const override;
   Result<void> put(const StoredChunk& chunk) override;
@@ -136,7 +139,7 @@ class GrvSink final : public LineSink {
 
  private:
   std::size_t count() const { return static_cast<std::size_t>(layout_.chunks()); }
-  Error refuse(const std::string& what) const { return {ErrorCode::bad_argument, output_.path() + ": " + what}; }
+  Error refuse(const std::string& what) const { return {ErrorCode::bad_argument, path_ + ": " + what}; }
   Result<void> check_open() const;
   Result<void> check_chunk(const StoredChunk& chunk) const;
   Result<void> check_complete(const ProgramHeader& header) const;
@@ -147,7 +150,8 @@ class GrvSink final : public LineSink {
   Error fail(const Error& error);
   void give_up();
 
-  FileOutput output_;
+  std::string path_;
+  std::optional<FileOutput> output_;
   std::shared_ptr<Hdf5Channel> channel_;
   OpenProgram program_;
   Layout layout_;
@@ -214,7 +218,7 @@ Result<void> GrvSink::check_chunk(const StoredChunk& chunk) const {
 
 /// Prefers what the operating system said to what HDF5 made of it, closes the file and removes it.
 Error GrvSink::fail(const Error& error) {
-  Error told = channel_->failure().value_or(Error{error.code, output_.path() + ": " + error.message});
+  Error told = channel_->failure().value_or(Error{error.code, path_ + ": " + error.message});
   give_up();
   return told;
 }
@@ -224,7 +228,7 @@ void GrvSink::give_up() {
   set_points_.close();
   targets_.close();
   program_ = {};
-  FileOutput discarded = std::move(output_);
+  output_.reset();
 }
 
 Result<void> GrvSink::put(const StoredChunk& chunk) {
@@ -360,28 +364,49 @@ Result<void> GrvSink::finish(const ProgramHeader& header) {
       return fail(written.error());
     }
   }
-  return output_.commit();
+  return output_ ? output_->commit() : Result<void>();
 }
 
+namespace {
+
+Result<Layout> checked_layout(std::int64_t layers, std::int64_t lines_per_layer, std::int64_t line_bytes,
+                              const GrvOptions& options) {
+  if (options.zstd_level < 1 || options.zstd_level > 19) {
+    return Error{ErrorCode::out_of_range, "zstd_level = " + std::to_string(options.zstd_level) + ": must be 1 to 19"};
+  }
+  return make_layout(layers, lines_per_layer, line_bytes, options.chunk_bytes);
+}
+
+Result<std::unique_ptr<GrvSink>> begin_sink(const FileOutput& output, const Layout& layout, const GrvOptions& options) {
+  const std::string& path = output.path();
+  GRAVURE_TRY(auto file, open_file(output.temporary_path(), OpenFor::writing, path));
+  auto channel = std::make_shared<Hdf5Channel>(std::move(file));
+  const Hdf5Session session;
+  auto program = create_program(channel, layout, options);
+  if (!program || channel->failure()) {
+    const Error error = program ? write_failure("the HDF5 file") : program.error();
+    return channel->failure().value_or(Error{error.code, path + ": " + error.message});
+  }
+  return std::make_unique<GrvSink>(path, channel, std::move(program).value(), layout, options);
+}
+
+}  // namespace
 }  // namespace grv
 
 Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64_t layers, std::int64_t lines_per_layer,
                                              std::int64_t line_bytes, const GrvOptions& options) {
-  if (options.zstd_level < 1 || options.zstd_level > 19) {
-    return Error{ErrorCode::out_of_range, "zstd_level = " + std::to_string(options.zstd_level) + ": must be 1 to 19"};
-  }
-  GRAVURE_TRY(const grv::Layout layout, grv::make_layout(layers, lines_per_layer, line_bytes, options.chunk_bytes));
+  GRAVURE_TRY(const grv::Layout layout, grv::checked_layout(layers, lines_per_layer, line_bytes, options));
   GRAVURE_TRY(FileOutput output, FileOutput::create(path));
-  GRAVURE_TRY(auto file, grv::open_file(output.temporary_path(), grv::OpenFor::writing, path));
-  auto channel = std::make_shared<grv::Hdf5Channel>(std::move(file));
-  const grv::Hdf5Session session;
-  auto program = grv::create_program(channel, layout, options);
-  if (!program || channel->failure()) {
-    const Error error = program ? grv::write_failure("the HDF5 file") : program.error();
-    return channel->failure().value_or(Error{error.code, path + ": " + error.message});
-  }
-  return std::unique_ptr<LineSink>(
-      std::make_unique<grv::GrvSink>(std::move(output), channel, std::move(program).value(), layout, options));
+  GRAVURE_TRY(std::unique_ptr<grv::GrvSink> sink, grv::begin_sink(output, layout, options));
+  sink->commits(std::move(output));
+  return std::unique_ptr<LineSink>(std::move(sink));
+}
+
+Result<std::unique_ptr<LineSink>> stage_grv(const FileOutput& output, std::int64_t layers, std::int64_t lines_per_layer,
+                                            std::int64_t line_bytes, const GrvOptions& options) {
+  GRAVURE_TRY(const grv::Layout layout, grv::checked_layout(layers, lines_per_layer, line_bytes, options));
+  GRAVURE_TRY(std::unique_ptr<grv::GrvSink> sink, grv::begin_sink(output, layout, options));
+  return std::unique_ptr<LineSink>(std::move(sink));
 }
 
 }  // namespace gravure

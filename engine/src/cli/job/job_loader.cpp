@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "gravure/core/file_output.hpp"
 #include "gravure/formats/image_files.hpp"
 #include "gravure/formats/job_file.hpp"
 #include "gravure/pipeline/compile.hpp"
@@ -275,9 +276,10 @@ Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& o
       return CompileOutcome{std::move(*there), true};
     }
   }
+  GRAVURE_TRY(FileOutput output, FileOutput::create(request.output));
   GRAVURE_TRY(const std::unique_ptr<LineSink> sink,
-              create_grv(request.output, static_cast<std::int64_t>(made.header.layers.size()),
-                         loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), request.grv));
+              stage_grv(output, static_cast<std::int64_t>(made.header.layers.size()),
+                        loaded.plan.rotary.lines_per_revolution, made.header.line_bytes(), request.grv));
   CompileProgress progress(hashes);
   options.memory_bytes = command.memory_bytes();
   options.threads = command.threads;
@@ -287,13 +289,13 @@ Result<CompileOutcome> compile_job(const LoadedJob& loaded, const ImageOpener& o
   };
   GRAVURE_TRY(ProgramHeader header, compile(std::move(made.header), made.stack, opener, *sink, options));
   if (!request.shard && may_share_bits(header)) {  // shards are compared when they are merged
-    Result<ProgramHeader> shared = share_bits_of(request.output, request.grv);
-    if (!shared) {  // stopped before it was what it is to be: nothing is left
-      std::error_code ignored;
-      std::filesystem::remove(request.output, ignored);
+    GRAVURE_TRY(std::optional<ProgramHeader> shared,
+                write_shared(output.temporary_path(), request.output, request.grv));
+    if (shared) {
+      return CompileOutcome{std::move(*shared), false};
     }
-    GRAVURE_TRY(header, std::move(shared));
   }
+  GRAVURE_CHECK(output.commit());
   return CompileOutcome{std::move(header), false};
 }
 

@@ -146,21 +146,40 @@ std::string job_path_from(const std::string& output, const ProgramHeader& header
   return failed ? header.job_path : near.generic_string();
 }
 
-}  // namespace
-
-Result<ProgramHeader> share_bits_of(const std::string& path, const GrvOptions& grv) {
-  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
-  const ProgramHeader& header = program->header();
-  const std::vector<MergePart> parts = {{program.get(), path}};
-  GRAVURE_TRY(MergedProgram merged, join_parts(parts, [&header](std::int64_t revolution) {
+/// A whole program that stores every layer, made of itself: its header has `bits_of_layer` where layers are equal.
+Result<MergedProgram> share_bits_of(std::span<const MergePart> whole) {
+  const ProgramHeader& header = whole.front().lines->header();
+  GRAVURE_TRY(MergedProgram merged, join_parts(whole, [&header](std::int64_t revolution) {
                 const std::uint32_t layer = header.layer_of_revolution[static_cast<std::size_t>(revolution)];
                 return LayerNumber{layer, header.layers[layer].source};
               }));
-  GRAVURE_CHECK(share_equal_bits(merged, parts, &cancel_token()));
-  if (!merged.header.bits_of_layer.empty()) {
-    GRAVURE_CHECK(write_program(merged, parts, path, grv));
+  GRAVURE_CHECK(share_equal_bits(merged, whole, &cancel_token()));
+  return merged;
+}
+
+/// Older versions put a program in its place before they looked for equal layers, and could be killed in between.
+Result<bool> stores_equal_layers_once(LineSource& program, const std::string& path) {
+  const ProgramHeader& header = program.header();
+  if (header.shard || !header.bits_of_layer.empty() || !may_share_bits(header)) {
+    return true;
   }
-  return merged.header;
+  const std::vector<MergePart> whole = {{&program, path}};
+  GRAVURE_TRY(const MergedProgram merged, share_bits_of(whole));
+  return merged.header.bits_of_layer.empty();
+}
+
+}  // namespace
+
+Result<std::optional<ProgramHeader>> write_shared(const std::string& path, const std::string& output,
+                                                  const GrvOptions& grv) {
+  GRAVURE_TRY(const std::unique_ptr<LineSource> program, open_grv(path));
+  const std::vector<MergePart> whole = {{program.get(), path}};
+  GRAVURE_TRY(MergedProgram merged, share_bits_of(whole));
+  if (merged.header.bits_of_layer.empty()) {
+    return std::optional<ProgramHeader>();
+  }
+  GRAVURE_CHECK(write_program(merged, whole, output, grv));
+  return std::optional<ProgramHeader>(std::move(merged.header));
 }
 
 Result<std::optional<ProgramHeader>> finished_output(const ProgramHeader& wanted, const CompileRequest& request,
@@ -180,7 +199,11 @@ Result<std::optional<ProgramHeader>> finished_output(const ProgramHeader& wanted
     return none;
   }
   GRAVURE_TRY(const bool sound, is_sound(program, cancel));
-  return sound ? std::optional<ProgramHeader>(header) : none;
+  if (!sound) {
+    return none;
+  }
+  GRAVURE_TRY(const bool once, stores_equal_layers_once(program, request.output));
+  return once ? std::optional<ProgramHeader>(header) : none;
 }
 
 Result<ProgramHeader> merge_shards(const std::vector<std::string>& shards, const std::string& output) {

@@ -11,12 +11,14 @@
 
 namespace gravure::cli {
 
-/// Writes the program at `path` anew if some of its layers show the same picture, and stores that once. The file is
-/// whole before and after; a cancelled call leaves the one from before. Returns the header.
-Result<ProgramHeader> share_bits_of(const std::string& path, const GrvOptions& grv);
+/// Writes the program at `path` to `output` with layers that show the same picture stored once, and returns its header.
+/// Where no two do, nothing is written and nothing returned.
+Result<std::optional<ProgramHeader>> write_shared(const std::string& path, const std::string& output,
+                                                  const GrvOptions& grv);
 
 /// The header of the output of `request` where it is there already, whole, and what compiling to `wanted` would make:
-/// the same job, images and storage, and every checksum holds. Nothing where it is to be compiled.
+/// the same job, images and storage, equal layers stored once, and every checksum holds. Nothing where it is to be
+/// compiled.
 Result<std::optional<ProgramHeader>> finished_output(const ProgramHeader& wanted, const CompileRequest& request,
                                                      const CancelToken& cancel);
 

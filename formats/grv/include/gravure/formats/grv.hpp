@@ -10,6 +10,8 @@
 
 namespace gravure {
 
+class FileOutput;
+
 namespace grv {
 struct OpenedProgram;
 }
@@ -39,6 +41,10 @@ struct GrvOptions {
 /// sizes below 1 or beyond 1 GiB a chunk, io where the file cannot be created.
 Result<std::unique_ptr<LineSink>> create_grv(const std::string& path, std::int64_t layers, std::int64_t lines_per_layer,
                                              std::int64_t line_bytes, const GrvOptions& options = {});
+/// The same, but finish() leaves the whole program at output.temporary_path(): there it can be read, and it is the
+/// caller's to commit. `output` outlives the sink.
+Result<std::unique_ptr<LineSink>> stage_grv(const FileOutput& output, std::int64_t layers, std::int64_t lines_per_layer,
+                                            std::int64_t line_bytes, const GrvOptions& options = {});
 
 /// Opens a program file and verifies everything in it but the bits, which decode() verifies chunk by chunk: any chunk
 /// can be had without reading the others. Fails with io where the file cannot be read, bad_file where it is no program,
