@@ -1,5 +1,7 @@
 #include "gravure/pipeline/merge.hpp"
 
+#include <xxhash.h>
+
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -111,6 +113,17 @@ Result<void> add_part(const MergePart& part, std::size_t index, const LayerNumbe
   return {};
 }
 
+/// A chunk that is passed on as it lies in its part: nobody unpacks it, so its checksum is looked at here.
+Result<StoredChunk> fetch_sound(const MergePart& part, ChunkAddress address) {
+  GRAVURE_TRY(StoredChunk chunk, part.lines->fetch(address));
+  if (XXH3_64bits(chunk.bytes.data(), chunk.bytes.size()) != chunk.checksum) {
+    return Error{ErrorCode::bad_file,
+                 part.name + ": layer " + std::to_string(address.layer) + ", chunk " + std::to_string(address.chunk) +
+                     ": altered, its checksum does not hold: get a good copy, or compile it again"};
+  }
+  return chunk;
+}
+
 }  // namespace
 
 bool interleaves_layers(const ProgramHeader& header) {
@@ -151,7 +164,7 @@ Result<void> write_merged(const MergedProgram& merged, std::span<const MergePart
     }
     const ChunkAddress to = interleaved ? ChunkAddress{i % layers, i / layers} : ChunkAddress{i / chunks, i % chunks};
     const LayerPlace& from = merged.bits[static_cast<std::size_t>(to.layer)];
-    GRAVURE_TRY(StoredChunk chunk, parts[from.part].lines->fetch({from.layer, to.chunk}));
+    GRAVURE_TRY(StoredChunk chunk, fetch_sound(parts[from.part], {from.layer, to.chunk}));
     chunk.address = to;
     GRAVURE_CHECK(sink.put(chunk));
     if (progress != nullptr) {

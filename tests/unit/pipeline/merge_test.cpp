@@ -1,5 +1,7 @@
 #include "gravure/pipeline/merge.hpp"
 
+#include <xxhash.h>
+
 #include <algorithm>
 
 #include "pipeline_support.hpp"
@@ -16,7 +18,12 @@ struct Parts {
   std::vector<MemorySource> sources;
   std::vector<MergePart> parts;
 
-  void add(MemoryProgram program) { programs.push_back(std::move(program)); }
+  void add(MemoryProgram program) {
+    for (auto& [address, chunk] : program.chunks) {  // as a sink that writes a file does
+      chunk.checksum = XXH3_64bits(chunk.bytes.data(), chunk.bytes.size());
+    }
+    programs.push_back(std::move(program));
+  }
   std::span<const MergePart> all() {
     sources.clear();
     parts.clear();
@@ -153,6 +160,34 @@ TEST(Merge, RefusesShardsOfAnImageThatChangedInBetween) {
   ASSERT_FALSE(merged);
   EXPECT_EQ(merged.error().code, ErrorCode::bad_file);
   EXPECT_NE(merged.error().message.find("changed"), std::string::npos) << merged.error().message;
+}
+
+TEST(Merge, RefusesAShardWhoseStoredBitsWereAlteredByName) {
+  SCOPED_TRACE(Dice::note());
+  Stack job({0, 1, 2});
+  Parts parts;
+  parts.add(shard_of(job, 0, 1));
+  parts.add(shard_of(job, 1, 3));
+  const Result<MergedProgram> merged = join_parts(parts.all(), one_each);
+  ASSERT_TRUE(merged);
+  for (auto& [address, chunk] : parts.programs[1].chunks) {
+    for (std::byte& byte : {std::ref(chunk.bytes.front()), std::ref(chunk.bytes.back())}) {
+      byte ^= std::byte{0x10};
+      MemoryProgram whole;
+      whole.lines_per_chunk = 4;
+      MemorySink sink(whole);
+      const Result<void> written = write_merged(merged.value(), parts.parts, sink, nullptr, nullptr);
+      ASSERT_FALSE(written);
+      EXPECT_EQ(written.error().code, ErrorCode::bad_file);
+      EXPECT_NE(written.error().message.find("part1: layer " + std::to_string(address.first) + ", chunk " +
+                                             std::to_string(address.second) + ": altered"),
+                std::string::npos)
+          << written.error().message;
+      EXPECT_EQ(whole.finished, 0);
+      byte ^= std::byte{0x10};
+    }
+  }
+  EXPECT_EQ(write(merged.value(), parts.parts).finished, 1) << "undamaged again";
 }
 
 TEST(ShareBits, StoresEqualPicturesOnceWhicheverWayTheirLinesAreStored) {

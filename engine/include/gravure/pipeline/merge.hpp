@@ -53,7 +53,8 @@ Result<void> share_equal_bits(MergedProgram& merged, std::span<const MergePart> 
 bool may_share_bits(const ProgramHeader& header);
 
 /// Copies the stored chunks, in the order in which compile() puts them, and finishes the sink, which takes
-/// `merged.bits.size()` layers. The file is the one that a single compile of the job makes, byte for byte.
+/// `merged.bits.size()` layers. The file is the one that a single compile of the job makes, byte for byte. A chunk
+/// whose checksum does not hold is bad_file, with the name of its part.
 Result<void> write_merged(const MergedProgram& merged, std::span<const MergePart> parts, LineSink& sink,
                           CancelToken* cancel, Progress* progress);
 
