@@ -87,10 +87,14 @@ class Work {
         workers.emplace_back([&] { work(programs); });
       }
     } catch (const std::system_error&) {  // no more threads to be had: those there are do it
+    } catch (const std::bad_alloc&) {     // nor memory for one
     }
     work(programs);
     for (std::thread& worker : workers) {
       worker.join();
+    }
+    if (out_of_memory_) {
+      return Error{ErrorCode::io, "out of memory: lower --memory or --threads"};
     }
     if (error_) {
       return *error_;
@@ -141,8 +145,8 @@ class Work {
   void work(const Programs& programs) {
     try {
       work_on_layers(programs);
-    } catch (const std::bad_alloc&) {
-      fail({ErrorCode::io, "out of memory: lower --memory or --threads"});
+    } catch (const std::bad_alloc&) {  // to say so here would take memory
+      out_of_memory_ = failed_ = true;
     }
   }
 
@@ -267,6 +271,7 @@ class Work {
   std::vector<std::int64_t> cell_heights_;
   std::atomic<std::int64_t> next_ = 0;
   std::atomic<bool> failed_ = false;
+  std::atomic<bool> out_of_memory_ = false;
   std::mutex mutex_;  ///< of what follows, and of the pictures
   std::int64_t done_ = 0;
   std::optional<Error> error_;
