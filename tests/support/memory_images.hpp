@@ -24,9 +24,10 @@ class MemoryImages final : public ImageOpener {
   struct Image {
     ImageInfo info;
     Samples samples;
-    std::optional<std::int64_t> damaged_row;  ///< reading it fails with bad_file
+    std::optional<std::int64_t> damaged_row;  ///< reading it fails
     /// Fills a packed row at once instead of `samples`, for pictures of many pixels.
     std::function<void(std::int64_t row, std::span<std::byte> out)> packed_row;
+    ErrorCode damage = ErrorCode::bad_file;  ///< what reading the damaged row fails with
   };
 
   void add(Image image) {
@@ -75,7 +76,7 @@ class MemoryImages final : public ImageOpener {
       }
       const std::int64_t damaged = image_.damaged_row.value_or(-1);
       if (damaged >= first_row && damaged < first_row + row_count) {
-        return Error{ErrorCode::bad_file, image_.info.path + ": row " + std::to_string(damaged) + " is damaged"};
+        return Error{image_.damage, image_.info.path + ": row " + std::to_string(damaged) + " is damaged"};
       }
       next_row_ = first_row + row_count;
       parent_.rows_read_ += row_count;

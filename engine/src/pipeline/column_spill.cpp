@@ -19,6 +19,7 @@ namespace {
 constexpr std::int64_t kLeastSlabRows = 64;   // pieces of 8 bytes; shorter ones cost more than decoding again
 constexpr std::int64_t kMostSlabRows = 4096;  // beyond this nothing is won
 constexpr std::int64_t kBandRows = 64;
+constexpr std::size_t kPieceBytes = std::size_t{8} << 20;  // written at a time
 
 Error failure(const char* what) {
   return {ErrorCode::io, std::string("temporary file for columns: ") + what + ": " + std::strerror(errno) +
@@ -92,14 +93,18 @@ std::int64_t ColumnSpill::offset_of(std::int64_t slab) const {
   return slab * (size_.slab_rows / 8) * size_.columns;
 }
 
-Result<std::shared_ptr<const ColumnSpill>> ColumnSpill::make(const Size& size, const RowReader& rows) {
-  GRAVURE_TRY(const int fd, nameless_file());
-  const auto spill = std::make_shared<ColumnSpill>(size, fd);
-  GRAVURE_CHECK(spill->fill(rows));
-  return std::shared_ptr<const ColumnSpill>(spill);
+Result<std::shared_ptr<const ColumnSpill>> ColumnSpill::make(const Size& size, const RowReader& rows,
+                                                             const StopTest& stop_test) {
+  const Result<int> fd = nameless_file();
+  if (!fd) {
+    return std::shared_ptr<const ColumnSpill>();
+  }
+  const auto spill = std::make_shared<ColumnSpill>(size, fd.value());
+  GRAVURE_TRY(const bool filled, spill->fill(rows, stop_test));
+  return filled ? std::shared_ptr<const ColumnSpill>(spill) : nullptr;
 }
 
-Result<void> ColumnSpill::fill(const RowReader& rows) {
+Result<bool> ColumnSpill::fill(const RowReader& rows, const StopTest& stop_test) {
   const std::int64_t row_bytes = raster::packed_bytes(size_.columns);
   std::vector<std::byte> slab(as_size(size_.slab_rows * row_bytes));
   std::vector<std::byte> turned(as_size(size_.slab_rows / 8 * size_.columns));
@@ -112,15 +117,23 @@ Result<void> ColumnSpill::fill(const RowReader& rows) {
     }
     const auto columns = std::span(turned).first(as_size(raster::packed_bytes(count) * size_.columns));
     raster::transpose(columns, slab, count, size_.columns);
-    GRAVURE_CHECK(write_at(fd_, offset_of(number), columns));
+    for (std::size_t at = 0; at < columns.size(); at += kPieceBytes) {  // a disk may be slower than any codec
+      GRAVURE_CHECK(stop_test());
+      const std::size_t now = std::min(kPieceBytes, columns.size() - at);
+      if (!write_at(fd_, offset_of(number) + static_cast<std::int64_t>(at), columns.subspan(at, now))) {
+        return false;
+      }
+    }
   }
-  return {};
+  return true;
 }
 
-Result<void> ColumnSpill::read(std::int64_t first, std::int64_t count, std::span<std::byte> out) const {
+Result<void> ColumnSpill::read(std::int64_t first, std::int64_t count, std::span<std::byte> out,
+                               const StopTest& stop_test) const {
   const std::int64_t line_bytes = raster::packed_bytes(size_.rows);
   std::vector<std::byte> pieces(as_size(size_.slab_rows / 8 * count));
   for (std::int64_t slab = 0; slab * size_.slab_rows < size_.rows; ++slab) {
+    GRAVURE_CHECK(stop_test());
     const std::int64_t piece = raster::packed_bytes(rows_in(slab));
     const auto now = std::span(pieces).first(as_size(piece * count));
     GRAVURE_CHECK(read_at(fd_, offset_of(slab) + first * piece, now));
@@ -140,12 +153,9 @@ Result<std::shared_ptr<const ColumnSpill>> ColumnSpills::get(const std::string& 
     return there;
   }
   Result<std::shared_ptr<const ColumnSpill>> made = make();
-  if (!made && made.error().code == ErrorCode::io) {
-    no_room_ = true;
-    return std::shared_ptr<const ColumnSpill>();
-  }
   if (made) {
     known = made.value();
+    no_room_ = made.value() == nullptr;
   }
   return made;
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gravure/core/error.hpp"
+#include "gravure/core/layer_lines.hpp"
 
 namespace gravure {
 
@@ -34,15 +35,17 @@ class ColumnSpill {
 
   /// Rows of a slab such that making a spill takes at most `bytes`; 0 where that is too little to be worth it.
   static std::int64_t slab_rows_for(std::int64_t columns, std::int64_t bytes);
-  /// Reads the image and writes its columns to a file in the folder for temporary files. io where that folder cannot
-  /// take it (no room, not writable), which leaves nothing behind; else what the reader says.
-  static Result<std::shared_ptr<const ColumnSpill>> make(const Size& size, const RowReader& rows);
+  /// Reads the image and writes its columns to a file in the folder for temporary files. Null where that folder cannot
+  /// take it (no room, not writable), which leaves nothing behind; an error is the reader's, or the stop test's.
+  static Result<std::shared_ptr<const ColumnSpill>> make(const Size& size, const RowReader& rows,
+                                                         const StopTest& stop_test);
 
   /// Columns [first, first + count) as lines of packed rows.
-  Result<void> read(std::int64_t first, std::int64_t count, std::span<std::byte> out) const;
+  Result<void> read(std::int64_t first, std::int64_t count, std::span<std::byte> out, const StopTest& stop_test) const;
 
  private:
-  Result<void> fill(const RowReader& rows);
+  /// False: no room.
+  Result<bool> fill(const RowReader& rows, const StopTest& stop_test);
   std::int64_t rows_in(std::int64_t slab) const;
   std::int64_t offset_of(std::int64_t slab) const;
 

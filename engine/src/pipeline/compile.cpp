@@ -185,6 +185,7 @@ class Compiler {
 
   void work_on_tickets() {
     const std::unique_ptr<LayerLines> reader = make_layer_lines(header_, stack_, opener_, budget_.panel_bytes);
+    reader->stop_when([this] { return go_on(); });
     const std::size_t bytes = static_cast<std::size_t>(geometry_.lines_per_chunk * geometry_.line_bytes);
     const auto buffers = std::make_unique_for_overwrite<std::byte[]>(2 * bytes);
     const std::span<std::byte> read(buffers.get(), bytes);
@@ -201,10 +202,6 @@ class Compiler {
                 std::span<std::byte> placed) {
     for (std::int64_t chunk = task.first_chunk; chunk < task.first_chunk + task.chunks; ++chunk) {
       for (std::int64_t layer = task.first_layer; layer < task.first_layer + task.layers; ++layer) {
-        if (options_.cancel != nullptr && options_.cancel->cancelled()) {
-          writer_.fail({ErrorCode::cancelled, "stopped before the program was complete; nothing was written"});
-          return false;
-        }
         Result<StoredChunk> stored = make_chunk({layer, chunk}, reader, read, placed);
         if (!stored) {
           writer_.fail(stored.error());
@@ -219,8 +216,20 @@ class Compiler {
     return writer_.close(ticket);
   }
 
+  /// Asked before every chunk, and by the readers while they collect columns.
+  Result<void> go_on() const {
+    if (options_.cancel != nullptr && options_.cancel->cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped before the program was complete; nothing was written"};
+    }
+    if (writer_.failed()) {
+      return Error{ErrorCode::cancelled, "stopped by the error of another worker"};  // which is the one that is told
+    }
+    return {};
+  }
+
   Result<StoredChunk> make_chunk(ChunkAddress address, LayerLines& reader, std::span<std::byte> read,
                                  std::span<std::byte> placed) {
+    GRAVURE_CHECK(go_on());
     const std::int64_t first = address.chunk * geometry_.lines_per_chunk;
     const std::int64_t lines = geometry_.lines_of(address.chunk);
     const auto bytes = static_cast<std::size_t>(lines * geometry_.line_bytes);

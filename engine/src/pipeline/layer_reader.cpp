@@ -16,7 +16,10 @@
 namespace gravure {
 namespace {
 
-constexpr std::int64_t kBandBytes = std::int64_t{4} << 20;  // a band of rows while a panel is collected
+// A band of rows while a panel is collected: what is decoded between two questions whether to go on. The slowest codec,
+// fax of a dithered picture, takes 60 ms for the bits.
+constexpr std::int64_t kBitBandBytes = std::int64_t{1} << 20;
+constexpr std::int64_t kGreyBandBytes = std::int64_t{4} << 20;
 
 std::int64_t bytes_per_sample(SampleType samples) {
   return row_bytes(samples, 1);
@@ -29,7 +32,8 @@ std::int64_t held_line_bytes(const LayerStack& stack) {
 
 /// Rows of the image decoded at a time while a panel is collected.
 std::int64_t band_rows_of(const LayerStack& stack) {
-  return std::clamp<std::int64_t>(kBandBytes / std::max<std::int64_t>(1, row_bytes(stack.samples, stack.lines)), 1,
+  const std::int64_t bytes = stack.samples == SampleType::bit ? kBitBandBytes : kGreyBandBytes;
+  return std::clamp<std::int64_t>(bytes / std::max<std::int64_t>(1, row_bytes(stack.samples, stack.lines)), 1,
                                   std::max<std::int64_t>(1, stack.pixels));
 }
 
@@ -177,6 +181,7 @@ Result<void> LayerReader::select(const LayerInput& input) {
 }
 
 Result<void> LayerReader::read_rows(std::int64_t first_row, std::int64_t count, std::span<std::byte> out) {
+  GRAVURE_CHECK(go_on());
   if (!source_->info().random_access && first_row < next_row_) {  // such a file only runs upwards: start it again
     source_.reset();                                              // one at a time is what its memory is counted for
     GRAVURE_TRY(source_, open_tiled(opener_, path_, page_, stack_.tiles));
@@ -197,7 +202,7 @@ Result<void> LayerReader::load_panel(std::int64_t first_line) {
   GRAVURE_CHECK(find_spill());
   if (spill_) {
     held_.resize(as_size(count * held_line_bytes(stack_)));
-    GRAVURE_CHECK(spill_->read(first, count, held_));
+    GRAVURE_CHECK(spill_->read(first, count, held_, [this] { return go_on(); }));
   } else {
     GRAVURE_CHECK(decode_panel(first, count));
   }
@@ -207,7 +212,10 @@ Result<void> LayerReader::load_panel(std::int64_t first_line) {
 }
 
 Result<void> LayerReader::find_spill() {
-  if (spill_ || !stack_.spills || stack_.samples != SampleType::bit || stack_.lines <= kMostDecodings * panel_lines_) {
+  // One file costs no more CPU than a second decoding does, of plain or Deflate data, and far less with the other
+  // codecs.
+  if (spill_ || !spills_wanted_ || !stack_.spills || stack_.samples != SampleType::bit ||
+      stack_.lines <= panel_lines_) {
     return {};
   }
   const std::int64_t panel_bytes = 2 * panel_lines_ * held_line_bytes(stack_);
@@ -215,11 +223,13 @@ Result<void> LayerReader::find_spill() {
   if (slab_rows == 0) {
     return {};
   }
-  held_ = {};  // what it takes to make one is in the place of the panel
+  GRAVURE_CHECK(go_on());  // nor wait for whoever makes it
+  held_ = {};              // what it takes to make one is in the place of the panel
   GRAVURE_TRY(spill_, stack_.spills->get(path_, page_, [&] {
     return ColumnSpill::make(
         {stack_.pixels, stack_.lines, slab_rows},
-        [this](std::int64_t row, std::int64_t count, std::span<std::byte> out) { return read_rows(row, count, out); });
+        [this](std::int64_t row, std::int64_t count, std::span<std::byte> out) { return read_rows(row, count, out); },
+        [this] { return go_on(); });
   }));
   return {};
 }

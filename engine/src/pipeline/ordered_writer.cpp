@@ -4,13 +4,20 @@
 
 namespace gravure {
 
+void OrderedWriter::keep(Error error) {
+  if (!error_) {
+    error_ = std::move(error);
+    failed_ = true;
+  }
+  turn_.notify_all();
+}
+
 void OrderedWriter::write(const StoredChunk& chunk) {
   if (error_) {
     return;
   }
   if (Result<void> written = sink_.put(chunk); !written) {
-    error_ = written.error();
-    turn_.notify_all();
+    keep(written.error());
   }
 }
 
@@ -60,10 +67,7 @@ bool OrderedWriter::close(std::int64_t ticket) {
 
 void OrderedWriter::fail(Error error) {
   const std::lock_guard lock(mutex_);
-  if (!error_) {
-    error_ = std::move(error);
-  }
-  turn_.notify_all();
+  keep(std::move(error));
 }
 
 std::optional<Error> OrderedWriter::error() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <map>
@@ -24,6 +25,8 @@ class OrderedWriter {
   bool close(std::int64_t ticket);
   /// Stops everybody; the first error is kept.
   void fail(Error error);
+  /// Has anybody? Does not wait for the one who writes.
+  bool failed() const noexcept { return failed_; }
   /// What went wrong, if anything.
   std::optional<Error> error() const;
 
@@ -32,6 +35,7 @@ class OrderedWriter {
     std::vector<StoredChunk> chunks;
     bool closed = false;
   };
+  void keep(Error error);
   void write(const StoredChunk& chunk);
   void advance();
 
@@ -43,6 +47,7 @@ class OrderedWriter {
   std::int64_t waiting_bytes_ = 0;
   std::map<std::int64_t, Waiting> waiting_;
   std::optional<Error> error_;
+  std::atomic<bool> failed_{false};  ///< error_ is there
 };
 
 }  // namespace gravure

@@ -92,6 +92,9 @@ WindowReader::WindowReader(const ProgramHeader& header, const LayerStack& stack,
       revolution_of_(header.layers.size(), 0),
       panel_bytes_(panel_bytes - inner_panel_bytes(header.plan, stack, panel_bytes)),
       inner_(stack, opener, inner_panel_bytes(header.plan, stack, panel_bytes)) {
+  if (header.plan.carriage && stack.layers.size() > 1) {
+    inner_.decode_always();  // the images take turns in every panel
+  }
   for (std::size_t r = header.layer_of_revolution.size(); r-- > 0;) {
     revolution_of_[header.layer_of_revolution[r]] = header.first_revolution() + static_cast<std::int64_t>(r);
   }

@@ -138,6 +138,17 @@ class Verifier {
     stop_ = true;
   }
 
+  /// Asked before every revolution of a chunk, and by the readers of images while they collect columns.
+  Result<void> go_on() const {
+    if (options_.cancel != nullptr && options_.cancel->cancelled()) {
+      return Error{ErrorCode::cancelled, "stopped before everything was verified"};
+    }
+    if (stop_) {
+      return Error{ErrorCode::cancelled, "stopped by the error of another worker"};  // which is the one that is told
+    }
+    return {};
+  }
+
   void done(std::int64_t lines) {
     const std::lock_guard lock(mutex_);
     lines_done_ += lines;
@@ -198,9 +209,7 @@ class Verifier::Worker final : public PinObserver {
       GRAVURE_CHECK(chunk_.load(*program_, {layer, chunk}));
       GRAVURE_CHECK(load_image(layer, chunk));
       for (const std::int64_t revolution : parent_.revolutions_of_[as_size(layer)]) {
-        if (parent_.options_.cancel != nullptr && parent_.options_.cancel->cancelled()) {
-          return Error{ErrorCode::cancelled, "stopped before everything was verified"};
-        }
+        GRAVURE_CHECK(parent_.go_on());
         run_chunk(revolution);
         parent_.done(chunk_.lines());
       }
@@ -223,6 +232,7 @@ class Verifier::Worker final : public PinObserver {
       return invert.error();
     }
     if (!invert) {
+      GRAVURE_CHECK(parent_.go_on());  // stopped, not damaged
       const auto revolutions = static_cast<std::int64_t>(parent_.revolutions_of_[as_size(layer)].size());
       tally_.unread[layer].add(chunk, revolutions * chunk_.lines(), invert.error().message);
       return {};
@@ -372,6 +382,7 @@ void Verifier::work_on_tickets(const std::function<Result<std::unique_ptr<LineSo
     }
     reader = std::move(made).value();
     reader->grant_memory(lines_per_chunk_, image_bytes_);
+    reader->stop_when([this] { return go_on(); });
   }
   Worker worker(*this, std::move(program).value(), std::move(reader));
   const std::int64_t tasks = static_cast<std::int64_t>(groups_.size()) * chunks_;

@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <chrono>
 #include <functional>
 #include <optional>
+#include <thread>
 
 #include "gravure/core/units.hpp"
 #include "pipeline_support.hpp"
@@ -138,6 +141,87 @@ TEST(CompileFault, CancelledInTheMiddleItStopsSoon) {
     CancelAt brake(cancel, 100);
     EXPECT_EQ(failing(stack, images, threads, {.cancel = &cancel, .progress = &brake}).code, ErrorCode::cancelled);
     EXPECT_LT(images.rows_read(), 100 + 3 * (2 * threads + 1)) << "at most the chunk in hand is still read";
+  }
+}
+
+/// One picture of 16,384 columns and 8,192 rows, 16 bands of 1 MiB, whose columns are the lines.
+struct Tall {
+  static constexpr std::int64_t kColumns = 16'384;
+  static constexpr std::int64_t kRows = 8'192;
+  static constexpr std::int64_t kBandRows = 512;
+  static constexpr std::int64_t kLinesPerChunk = 64;
+  Tall() : stack(random_stack(images, SampleType::bit, LinesAlong::columns, kColumns, kRows, 1, 1)) {
+    stack.decoder_bytes = 0;
+  }
+  /// What every worker needs, and a share of the whole picture, which is held twice, for each.
+  std::int64_t memory(int threads, std::int64_t share) const {
+    return threads * (least_compile_memory(stack, kLinesPerChunk) + 2 * kColumns * kRows / 8 * 4 / 3 / share);
+  }
+
+  MemoryImages images;
+  LayerStack stack;
+};
+
+TEST(CompileFault, CancelledWhileColumnsAreCollectedItStopsWithinABand) {
+  struct Way {
+    const char* name;
+    std::int64_t share;
+    bool folder;
+  };
+  for (const Way& way : {Way{"one panel", 1, true}, Way{"a temporary file", 8, true}, Way{"no such file", 8, false}}) {
+    for (const int threads : kThreadCounts) {
+      SCOPED_TRACE(testing::Message() << way.name << ", " << threads << " threads");
+      std::optional<NoTemporaryFolder> nowhere;
+      if (!way.folder) {
+        nowhere.emplace();
+      }
+      Tall tall;
+      CancelToken cancel;
+      tall.images.at("layer0").packed_row = [&](std::int64_t /*row*/, std::span<std::byte> out) {
+        cancel.cancel();
+        std::fill(out.begin(), out.end(), std::byte{0x5A});
+      };
+      const Compiled compiled =
+          compile_stack(header_for(tall.stack, true), tall.stack, tall.images, Tall::kLinesPerChunk,
+                        {.memory_bytes = tall.memory(threads, way.share), .threads = threads, .cancel = &cancel});
+      ASSERT_FALSE(compiled.result);
+      EXPECT_EQ(compiled.result.error().code, ErrorCode::cancelled);
+      EXPECT_NE(compiled.result.error().message.find("nothing was written"), std::string::npos);
+      EXPECT_LE(tall.images.rows_read(), threads * Tall::kBandRows) << "at most the band in hand of every worker";
+    }
+  }
+}
+
+TEST(CompileFault, WhileColumnsAreCollectedStopsTheOtherWorkersWithinABand) {
+  Tall tall;
+  ImageInfo second = tall.images.at("layer0").info;
+  second.path = "layer1";
+  tall.stack.layers.push_back({second.path, 0, 0});
+  tall.images.at("layer0").damaged_row = 0;
+  // The other picture takes 1.6 s, long enough for the failure to be told.
+  tall.images.add({second, {}, {}, [](std::int64_t row, std::span<std::byte> out) {
+                     if (row % Tall::kBandRows == 0) {
+                       std::this_thread::sleep_for(std::chrono::milliseconds(100));
+                     }
+                     std::fill(out.begin(), out.end(), std::byte{0x5A});
+                   }});
+  const Compiled compiled = compile_stack(header_for(tall.stack, true), tall.stack, tall.images, Tall::kLinesPerChunk,
+                                          {.memory_bytes = tall.memory(2, 1), .threads = 2});
+  ASSERT_FALSE(compiled.result);
+  EXPECT_EQ(compiled.result.error().message, "layer0: row 0 is damaged");
+  EXPECT_LT(tall.images.rows_read(), Tall::kRows) << "the other picture is not read to its end";
+}
+
+TEST(CompileFault, OfADiskThatIsReadIsNoWantOfRoomForColumns) {
+  for (const int threads : kThreadCounts) {
+    Tall tall;
+    tall.images.at("layer0").damaged_row = 0;
+    tall.images.at("layer0").damage = ErrorCode::io;
+    const Compiled compiled = compile_stack(header_for(tall.stack, true), tall.stack, tall.images, Tall::kLinesPerChunk,
+                                            {.memory_bytes = tall.memory(threads, 8), .threads = threads});
+    ASSERT_FALSE(compiled.result);
+    EXPECT_EQ(compiled.result.error().code, ErrorCode::io);
+    EXPECT_EQ(compiled.result.error().message, "layer0: row 0 is damaged");
   }
 }
 

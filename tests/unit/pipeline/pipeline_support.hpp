@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -44,5 +46,22 @@ inline void expect_naive(const Compiled& compiled, const ProgramHeader& header, 
     EXPECT_EQ(compiled.result.value().layers[layer].fired_pixels, fired);
   }
 }
+
+/// No folder for temporary files, as long as it lives.
+class NoTemporaryFolder {
+ public:
+  NoTemporaryFolder() {
+    if (const char* before = std::getenv("TMPDIR")) {
+      kept_ = before;
+    }
+    EXPECT_EQ(::setenv("TMPDIR", "/nonexistent", 1), 0);
+  }
+  NoTemporaryFolder(const NoTemporaryFolder&) = delete;
+  NoTemporaryFolder& operator=(const NoTemporaryFolder&) = delete;
+  ~NoTemporaryFolder() { EXPECT_EQ(kept_ ? ::setenv("TMPDIR", kept_->c_str(), 1) : ::unsetenv("TMPDIR"), 0); }
+
+ private:
+  std::optional<std::string> kept_;
+};
 
 }  // namespace gravure::test

@@ -1,3 +1,9 @@
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "../tiff/temp_folder.hpp"
 #include "gravure/core/exposure_map.hpp"
 #include "gravure/pipeline/window_reader.hpp"
 #include "gravure/twin/exposure_count.hpp"
@@ -352,6 +358,34 @@ TEST(Modes, HelicalProgramIsTheSameWhateverTheMemoryAndReadsNoMoreThanItMust) {
   EXPECT_EQ(tight.program.order, roomy.program.order);
   for (const auto& [address, chunk] : roomy.program.chunks) {
     ASSERT_EQ(tight.program.chunks.at(address).bytes, chunk.bytes) << address.first << ", " << address.second;
+  }
+}
+
+TEST(Modes, HelicalImagesThatTakeTurnsWriteNoColumnsToTemporaryFiles) {
+  const TempFolder folder;
+  const auto long_ago = std::filesystem::last_write_time(folder.path()) - std::chrono::hours(1);
+  const char* const before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  for (const std::int64_t layers : {1, 2}) {
+    Shape shape;
+    shape.lines = 1'024;
+    shape.columns = 10'000;
+    shape.layers = layers;
+    shape.feed = 2'000;
+    shape.along = LinesAlong::columns;
+    SmallJob small;
+    prepare(small, shape);
+    for (const LayerInput& input : small.stack.layers) {
+      small.images.at(input.path).packed_row = [](std::int64_t row, std::span<std::byte> out) {
+        std::memset(out.data(), static_cast<int>(row & 0xFF), out.size());
+      };
+    }
+    std::filesystem::last_write_time(folder.path(), long_ago);
+    ASSERT_EQ(::setenv("TMPDIR", folder.path().c_str(), 1), 0);
+    compile_shape(small, shape, 128, {.memory_bytes = std::int64_t{8} << 20, .threads = 1});
+    EXPECT_EQ(before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", kept.c_str(), 1), 0);
+    ASSERT_FALSE(HasFailure());
+    EXPECT_EQ(std::filesystem::last_write_time(folder.path()) == long_ago, layers == 2) << layers << " layers";
   }
 }
 

@@ -180,6 +180,33 @@ TEST(Verify, StopsOnRequest) {
   }
 }
 
+TEST(Verify, StopsWithinABandWhileColumnsAreCollected) {
+  constexpr std::int64_t kColumns = 32'768;  // columns of the picture: 256 of its rows are a band of 1 MiB
+  constexpr std::int64_t kRows = 1'024;
+  SmallJob small;
+  small.job = small_job(kColumns);
+  small.stack = random_stack(small.images, SampleType::bit, LinesAlong::columns, kColumns, kRows, 1, 1);
+  CancelToken* brake = nullptr;
+  small.images.at("layer0").packed_row = [&](std::int64_t row, std::span<std::byte> out) {
+    std::fill(out.begin(), out.end(), static_cast<std::byte>(row));
+    if (brake != nullptr) {
+      brake->cancel();
+    }
+  };
+  ASSERT_NO_FATAL_FAILURE(compile_job(small, 1, LayerOrder::cycle, 4'096));
+  for (const int threads : {1, 2}) {
+    CancelToken cancel;
+    brake = &cancel;
+    const std::int64_t before = small.images.rows_read();
+    const Result<VerifyReport> report = verify_job(small, small.lines(), {.threads = threads, .cancel = &cancel});
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, ErrorCode::cancelled);
+    EXPECT_EQ(report.error().message, "stopped before everything was verified");
+    EXPECT_LE(small.images.rows_read() - before, threads * 256) << threads << " threads";
+    EXPECT_GT(small.images.rows_read(), before);
+  }
+}
+
 TEST(Verify, HandsOnWhatTheProgramSays) {
   for (const int threads : {1, 2, 5}) {
     SmallJob small;

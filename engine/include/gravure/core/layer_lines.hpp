@@ -10,6 +10,9 @@
 
 namespace gravure {
 
+/// Nothing as long as work is to go on; else the error to stop with. Asked often, so it is cheap.
+using StopTest = std::function<Result<void>()>;
+
 /// The lines of image layers as the images have them: left to right along the line, packed MSB first.
 /// Not thread-safe: each worker has its own.
 class LayerLines {
@@ -23,6 +26,8 @@ class LayerLines {
   virtual std::int64_t least_memory_bytes(std::int64_t /*lines*/) { return 0; }
   /// Grants memory, no less than that, before the first line is read.
   virtual void grant_memory(std::int64_t /*lines*/, std::int64_t /*bytes*/) {}
+  /// What is asked again and again within read_lines(), which may decode a whole picture for one line.
+  virtual void stop_when(StopTest /*test*/) {}
 };
 
 using LayerLinesFactory = std::function<Result<std::unique_ptr<LayerLines>>()>;

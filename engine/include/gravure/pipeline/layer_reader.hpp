@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gravure/core/image_source.hpp"
@@ -53,18 +54,19 @@ struct LayerStack {
 void learn_images(LayerStack& stack, const ImageOpener& opener);
 
 /// Reads the lines of a stack in bounded memory: rows straight from the file, columns by way of panels (as many columns
-/// as the budget holds, transposed in blocks; a picture with more is decoded once a panel, or, where that were more
-/// than kMostDecodings times, once into a temporary file that holds its columns. Samples of grey are always decoded
-/// again).
+/// as the budget holds, transposed in blocks). A bilevel picture of more than one panel is decoded once, into a
+/// temporary file that holds its columns, where one can be had; else, and always where samples are grey, once a panel.
 class LayerReader final : public LayerLines {
  public:
-  static constexpr std::int64_t kMostDecodings = 4;
   /// `panel_bytes` bounds what columns keep in memory; at least 8 columns are always held.
   LayerReader(const LayerStack& stack, const ImageOpener& opener, std::int64_t panel_bytes);
   Result<bool> read_lines(std::int64_t layer, std::int64_t first_line, std::int64_t count,
                           std::span<std::byte> out) override;
   std::int64_t least_memory_bytes(std::int64_t lines) override;
   void grant_memory(std::int64_t lines, std::int64_t bytes) override;
+  /// No temporary files, for readers that leave an image after every few lines: each visit would write one anew.
+  void decode_always() { spills_wanted_ = false; }
+  void stop_when(StopTest test) override { stop_test_ = std::move(test); }
 
   /// What a reader holds beside its panels when up to `lines` lines are asked for at once, as far as the stack tells.
   static std::int64_t fixed_bytes(const LayerStack& stack, std::int64_t lines);
@@ -78,6 +80,7 @@ class LayerReader final : public LayerLines {
     double value;
     raster::Where where;
   };
+  Result<void> go_on() const { return stop_test_ ? stop_test_() : Result<void>(); }
   Result<void> select(const LayerInput& input);
   Result<void> check_image(const LayerInput& input, const ImageInfo& info) const;
   Result<void> read_rows(std::int64_t first_row, std::int64_t count, std::span<std::byte> out);
@@ -96,6 +99,8 @@ class LayerReader final : public LayerLines {
   const LayerStack& stack_;
   const ImageOpener& opener_;
   std::int64_t panel_lines_;
+  StopTest stop_test_;
+  bool spills_wanted_ = true;
   std::unique_ptr<ImageSource> source_;
   std::string path_;
   std::int64_t page_ = -1;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "gravure/core/exposure_map.hpp"
@@ -36,6 +37,7 @@ class WindowReader final : public LayerLines {
                           std::span<std::byte> out) override;
   std::int64_t least_memory_bytes(std::int64_t lines) override;
   void grant_memory(std::int64_t lines, std::int64_t bytes) override;
+  void stop_when(StopTest test) override { inner_.stop_when(std::move(test)); }
 
  private:
   /// Columns of one image while they are kept: whole bytes of `lines` lines.
