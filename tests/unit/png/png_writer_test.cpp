@@ -73,7 +73,7 @@ TEST(PngWriter, StopsWhereARowOrTheFileFails) {
     return y < 3 ? Result<void>() : Error{ErrorCode::cancelled, "stopped"};
   };
   EXPECT_EQ(write_png({9, 9, 1, {}}, stop, keep).error().code, ErrorCode::cancelled);
-  for (const std::size_t most : {0, 40}) {  // in the header, at the end
+  for (const std::size_t most : {0U, 40U}) {  // in the header, at the end
     std::size_t bytes = 0;
     const PngBytes full = [&](std::span<const std::byte> piece) { return (bytes += piece.size()) <= most; };
     EXPECT_EQ(write_png({9, 9, 1, {}}, grey, full).error().code, ErrorCode::io);
