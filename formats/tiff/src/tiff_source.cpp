@@ -65,6 +65,9 @@ bool BilevelSource::decode_block(std::uint32_t number, std::byte* out, std::int6
   if (std::byte* const block = blocks_.get(TIFFFileno(tiff()), offset, stored)) {
     return TIFFReadFromUserBuffer(tiff(), number, block, stored, out, bytes) == 1 && !said_anything();
   }
+  if (is_device_failure(errno)) {  // where a read fails, libtiff 4.5 clears a byte before its buffer, too
+    return false;
+  }
   const tmsize_t got = TIFFIsTiled(tiff()) != 0 ? TIFFReadEncodedTile(tiff(), number, out, bytes)
                                                 : TIFFReadEncodedStrip(tiff(), number, out, bytes);
   return got == bytes && !said_anything();
